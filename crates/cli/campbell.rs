@@ -112,6 +112,20 @@ pub fn campbell(command: &CampbellCommand) -> Result<(), Failure> {
     campbell_files::write(&diagram, &command.out, &model.geometry, scene.effects.slip())
 }
 
+/// How many modes are wanted: at least one.
+fn number_of_modes(command: &CampbellCommand, model: &Model) -> Result<usize, Failure> {
+    let n_free = model.shaft.iter().filter(|dof| **dof == ShaftDof::Free).count();
+    let number = command.number.unwrap_or(n_free);
+    if number == 0 {
+        let problem = match command.number {
+            Some(_) => "--number is 0; expected at least 1",
+            None => "no dof of the shaft is free, so it has no modes; free some in [shaft], or give --number",
+        };
+        return Err(Failure::User(anyhow!("{problem}")));
+    }
+    Ok(number)
+}
+
 /// Modes at all speeds.
 fn diagram(
     mut scene: Scene,
@@ -124,15 +138,7 @@ fn diagram(
     let (mut model, _) = build_model(&scene)?;
     let mut warnings = doubts(&scene, &model);
     say_doubts(&warnings);
-    let n_free = model.shaft.iter().filter(|dof| **dof == ShaftDof::Free).count();
-    let number = command.number.unwrap_or(n_free);
-    if number == 0 {
-        let problem = match command.number {
-            Some(_) => "--number is 0; expected at least 1",
-            None => "no dof of the shaft is free, so it has no modes; free some in [shaft], or give --number",
-        };
-        return Err(Failure::User(anyhow!("{problem}")));
-    }
+    let number = number_of_modes(command, &model)?;
     let inertia = turning_inertia(&model).map_err(Failure::solving)?;
     if inertia.polar == 0.0 && model.shaft[3..].contains(&ShaftDof::Free) {
         warnings.push("shaft.polar_inertia is 0, so the speed splits no modes".to_string());

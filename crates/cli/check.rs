@@ -20,6 +20,7 @@ use crate::rank_table;
 use crate::ring_sizes::print_rings;
 use crate::rules;
 use crate::several_check;
+use crate::shared::print_effects;
 
 /// Reads and checks the scene and its meshes and prints effects, sizes and forecasts.
 pub fn check(path: &Path, overrides: &[String]) -> Result<(), Failure> {
@@ -34,6 +35,49 @@ pub fn check(path: &Path, overrides: &[String]) -> Result<(), Failure> {
         "scene    {}",
         scene.title.as_deref().unwrap_or("(no title)")
     ));
+    print_analysis(&scene);
+    print_effects(&scene.effects.names());
+    let geometry = &model.geometry;
+    print::line(format_args!(
+        "bearing  {} balls, clearance {:.4} mm, groove distance {:.4} mm, free contact angle {:.4} deg",
+        geometry.n_balls,
+        1e3 * geometry.clearance(),
+        1e3 * geometry.groove_distance(),
+        geometry.free_contact_angle().to_degrees()
+    ));
+    for line in model.mounting.report.iter().flat_map(results::mounting::lines) {
+        print::line(format_args!("mounted  {line}"));
+    }
+    print_rolling(&scene, geometry);
+    print_probes(&scene, probes.as_ref());
+    if let Some([points, cells]) = region.map(|region| region.shares()) {
+        let (points, cells) = (100.0 * points, 100.0 * cells);
+        print::line(format_args!(
+            "region   fields are kept at {points:.1} % of the points and {cells:.1} % of the cells"
+        ));
+    }
+    let rings = print_rings(&model)?;
+    print_memory(&scene, &model, rings.memory, rings.motion);
+    rank_table::print(&rings.on_ranks, &scene.analysis);
+    let forecast = Forecast::new(&scene, &model, 0);
+    print_output(&forecast);
+    for line in &scene.assumed {
+        print::line(format_args!("assumed  {line}"));
+    }
+    let advice = [doubts(&scene, &model), rules::advice(&scene, &model)?].concat();
+    for line in &advice {
+        print::line(format_args!("advice   {line}"));
+    }
+    answer::add("advice", &advice);
+    answer::add("assumed", &scene.assumed);
+    answer::add("clearance_m", geometry.clearance());
+    answer::add("free_contact_angle_rad", geometry.free_contact_angle());
+    answer::add("output_bytes", forecast.total);
+    answer::add("step_files", forecast.n_files);
+    Ok(())
+}
+
+fn print_analysis(scene: &Scene) {
     match &scene.analysis {
         Analysis::Static => print::line(format_args!("analysis static")),
         Analysis::QuasiStatic(quasi) => print::line(format_args!(
@@ -58,38 +102,10 @@ pub fn check(path: &Path, overrides: &[String]) -> Result<(), Failure> {
             sweep.points.len()
         )),
     }
-    let names = scene.effects.names();
-    print::line(format_args!(
-        "effects  {}",
-        if names.is_empty() {
-            "none".to_string()
-        } else {
-            names.join(", ")
-        }
-    ));
-    let geometry = &model.geometry;
-    print::line(format_args!(
-        "bearing  {} balls, clearance {:.4} mm, groove distance {:.4} mm, free contact angle {:.4} deg",
-        geometry.n_balls,
-        1e3 * geometry.clearance(),
-        1e3 * geometry.groove_distance(),
-        geometry.free_contact_angle().to_degrees()
-    ));
-    for line in model.mounting.report.iter().flat_map(results::mounting::lines) {
-        print::line(format_args!("mounted  {line}"));
-    }
-    print_rolling(&scene, geometry);
-    print_probes(&scene, probes.as_ref());
-    if let Some([points, cells]) = region.map(|region| region.shares()) {
-        let (points, cells) = (100.0 * points, 100.0 * cells);
-        print::line(format_args!(
-            "region   fields are kept at {points:.1} % of the points and {cells:.1} % of the cells"
-        ));
-    }
-    let rings = print_rings(&model)?;
-    print_memory(&scene, &model, rings.memory, rings.motion);
-    rank_table::print(&rings.on_ranks, &scene.analysis);
-    let forecast = Forecast::new(&scene, &model, 0);
+}
+
+/// Prints how much a run would write.
+fn print_output(forecast: &Forecast) {
     let free = disk::free_bytes(Path::new(".")).map_or(String::new(), |free| {
         format!("; the disk of this folder has {} free", disk::size(free))
     });
@@ -103,20 +119,6 @@ pub fn check(path: &Path, overrides: &[String]) -> Result<(), Failure> {
         forecast.n_files,
         disk::size(forecast.total)
     ));
-    for line in &scene.assumed {
-        print::line(format_args!("assumed  {line}"));
-    }
-    let advice = [doubts(&scene, &model), rules::advice(&scene, &model)?].concat();
-    for line in &advice {
-        print::line(format_args!("advice   {line}"));
-    }
-    answer::add("advice", &advice);
-    answer::add("assumed", &scene.assumed);
-    answer::add("clearance_m", geometry.clearance());
-    answer::add("free_contact_angle_rad", geometry.free_contact_angle());
-    answer::add("output_bytes", forecast.total);
-    answer::add("step_files", forecast.n_files);
-    Ok(())
 }
 
 /// Prints how cage and balls roll at the largest speed of the scene, and how often balls pass a point of each raceway

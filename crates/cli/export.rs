@@ -21,7 +21,7 @@ pub struct Export {
     steps: Option<RangeInclusive<u64>>,
     /// Form of the files.
     #[arg(long)]
-    to: Form,
+    to: ExportForm,
     /// Folder of the files; default: export in the folder of the results.
     #[arg(long)]
     out: Option<PathBuf>,
@@ -29,7 +29,7 @@ pub struct Export {
 
 /// Form of the files.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-enum Form {
+enum ExportForm {
     /// One table per step, a row per point: place, body, fields; another of stress at the integration points.
     Csv,
     /// One VTK XML file per step, and run.pvd with their times.
@@ -44,8 +44,8 @@ pub fn export(request: &Export) -> Result<(), Failure> {
     let out = request.out.clone().unwrap_or_else(|| dir.join("export"));
     make_output_folder(request.out.as_deref(), &out)?;
     let extension = match request.to {
-        Form::Csv => "csv",
-        Form::Vtu => "vtu",
+        ExportForm::Csv => "csv",
+        ExportForm::Vtu => "vtu",
     };
     let mut names = Vec::new();
     for step in steps {
@@ -53,17 +53,17 @@ pub fn export(request: &Export) -> Result<(), Failure> {
         require_same_mesh(&grid, &record)?;
         let name = format!("step_{step:06}.{extension}");
         let write = match request.to {
-            Form::Csv => csv::write,
-            Form::Vtu => vtu::write,
+            ExportForm::Csv => csv::write,
+            ExportForm::Vtu => vtu::write,
         };
         write_new(&out.join(&name), |file| write(file, &grid, &record))?;
-        if let (Form::Csv, Some(stress)) = (request.to, &record.cells.stress_integration_points) {
+        if let (ExportForm::Csv, Some(stress)) = (request.to, &record.cells.stress_integration_points) {
             let path = out.join(format!("step_{step:06}_integration_points.csv"));
             write_new(&path, |file| integration_points::write(file, &grid, stress))?;
         }
         names.push((name, record.time));
     }
-    if request.to == Form::Vtu {
+    if request.to == ExportForm::Vtu {
         write_new(&out.join("run.pvd"), |file| vtu::write_collection(file, &names))?;
     }
     print::line(format_args!(

@@ -5,8 +5,8 @@ use std::path::Path;
 
 use anyhow::{Context, anyhow};
 use checkpoint::{
-    FileDescription, committed_steps, describe, has_state, open_regular, read_mesh, read_step,
-    read_step_time, read_table, require_run, run_of, step_file_name,
+    CheckpointError, FileDescription, committed_steps, describe, has_state, open_regular, read_mesh,
+    read_step, read_step_time, read_table, require_run, run_of, step_file_name,
 };
 use comm::print;
 use results::answer;
@@ -18,7 +18,7 @@ use results::summary::SUMMARY_FILE;
 
 /// How closely the steps of a folder are looked at.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Depth {
+pub enum Inspection {
     /// What tells a whole file from a torn one: all but the values of the arrays.
     Structure,
     /// Every byte.
@@ -26,7 +26,7 @@ pub enum Depth {
 }
 
 /// Prints what is there. Damage found is printed, and then an error.
-pub fn info(path: &Path, depth: Depth) -> Result<(), Failure> {
+pub fn info(path: &Path, depth: Inspection) -> Result<(), Failure> {
     if path.is_dir() {
         folder(path, depth)
     } else if is_msh(path) {
@@ -98,7 +98,7 @@ fn line(name: &str, text: &str) {
     print::line(format_args!("{name:<11}{text}"));
 }
 
-fn folder(dir: &Path, depth: Depth) -> Result<(), Failure> {
+fn folder(dir: &Path, depth: Inspection) -> Result<(), Failure> {
     plot::require_one_bearing(dir)?;
     let steps = committed_steps(dir)?;
     line("folder", &dir.display().to_string());
@@ -108,8 +108,8 @@ fn folder(dir: &Path, depth: Depth) -> Result<(), Failure> {
         let path = dir.join(step_file_name(step));
         bytes += std::fs::metadata(&path).map_or(0, |data| data.len());
         let time = || match depth {
-            Depth::Structure => read_step_time(&path),
-            Depth::Bytes => read_step(&path).map(|record| record.time),
+            Inspection::Structure => read_step_time(&path),
+            Inspection::Bytes => read_step(&path).map(|record| record.time),
         };
         match require_run(&path, run.as_deref()).and_then(|()| time()) {
             Ok(time) => {
@@ -119,10 +119,44 @@ fn folder(dir: &Path, depth: Depth) -> Result<(), Failure> {
             Err(error) => damaged.push(error.to_string()),
         }
     }
-    if let Some(&(newest, _)) = sound.last() {
-        about(&describe(&dir.join(step_file_name(newest)))?);
+    if let Some((newest, _)) = sound.last() {
+        about(&describe(&dir.join(step_file_name(*newest)))?);
     }
-    match (&sound[..], steps.len()) {
+    line_of_steps(&sound, steps.len(), bytes);
+    let reduction = dir.join(REDUCTION_FILE);
+    if reduction.exists() {
+        match read_table(&reduction, run.as_deref()) {
+            Ok(table) => line(
+                REDUCTION,
+                &format!("{REDUCTION_FILE}: {}", table.about[REDUCTION]),
+            ),
+            Err(error) => damaged.push(error.to_string()),
+        }
+    }
+    if states.len() < sound.len() {
+        line("restart", &restart_text(&states));
+    }
+    if let Err(error) = line_of_mesh(dir) {
+        damaged.push(error.to_string());
+    }
+    lines_of_packs(dir)?;
+    damaged.extend(doubts(dir)?);
+    folder_state(dir)?;
+    answer::add_results(dir);
+    answer::add("steps", sound.iter().map(|(step, _)| step).collect::<Vec<_>>());
+    answer::add("damaged", &damaged);
+    for text in &damaged {
+        line("damaged", text);
+    }
+    match damaged.len() {
+        0 => Ok(()),
+        n => Err(anyhow!("{n} files of {} are damaged", dir.display()).into()),
+    }
+}
+
+/// How many steps there are, and of which times; `sound` are numbers and times, s.
+fn line_of_steps(sound: &[(u64, f64)], n_steps: usize, bytes: u64) {
+    match (sound, n_steps) {
         ([], 0) => line("steps", "none committed yet"),
         ([], n) => line("steps", &format!("{n}, all damaged")),
         ([first, ..], n) => {
@@ -140,31 +174,9 @@ fn folder(dir: &Path, depth: Depth) -> Result<(), Failure> {
             );
         }
     }
-    let reduction = dir.join(REDUCTION_FILE);
-    if reduction.exists() {
-        match read_table(&reduction, run.as_deref()) {
-            Ok(table) => line(
-                REDUCTION,
-                &format!("{REDUCTION_FILE}: {}", table.about[REDUCTION]),
-            ),
-            Err(error) => damaged.push(error.to_string()),
-        }
-    }
-    if states.len() < sound.len() {
-        line("restart", &restart_text(&states));
-    }
-    match read_mesh(dir) {
-        Ok(grid) => line(
-            "mesh",
-            &format!(
-                "{} points, {} cells of {} bodies",
-                grid.points.len(),
-                grid.types.len(),
-                grid.body.iter().collect::<std::collections::BTreeSet<_>>().len()
-            ),
-        ),
-        Err(error) => damaged.push(error.to_string()),
-    }
+}
+
+fn lines_of_packs(dir: &Path) -> Result<(), CheckpointError> {
     for (path, steps) in checkpoint::packs(dir)? {
         let bytes = std::fs::metadata(&path).map_or(0, |data| data.len());
         line(
@@ -172,18 +184,21 @@ fn folder(dir: &Path, depth: Depth) -> Result<(), Failure> {
             &format!("{}, {} steps, {}", path.display(), steps.len(), size(bytes)),
         );
     }
-    damaged.extend(doubts(dir)?);
-    folder_state(dir)?;
-    answer::add_results(dir);
-    answer::add("steps", sound.iter().map(|(step, _)| step).collect::<Vec<_>>());
-    answer::add("damaged", &damaged);
-    for text in &damaged {
-        line("damaged", text);
-    }
-    match damaged.len() {
-        0 => Ok(()),
-        n => Err(anyhow!("{n} files of {} are damaged", dir.display()).into()),
-    }
+    Ok(())
+}
+
+fn line_of_mesh(dir: &Path) -> Result<(), CheckpointError> {
+    let grid = read_mesh(dir)?;
+    line(
+        "mesh",
+        &format!(
+            "{} points, {} cells of {} bodies",
+            grid.points.len(),
+            grid.types.len(),
+            grid.body.iter().collect::<std::collections::BTreeSet<_>>().len()
+        ),
+    );
+    Ok(())
 }
 
 /// Steps that a run can go on from, where others cannot.

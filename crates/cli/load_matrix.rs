@@ -1,7 +1,7 @@
 //! `raceway load-matrix`: what the strain gauges of a scene read under a unit load of each ball. `raceway ball-loads`:
 //! ball loads from what the gauges of a run have read, as a sensor bearing computes them.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use anyhow::{Context, anyhow};
 use clap::Args;
@@ -120,23 +120,65 @@ fn ring_of(scene: &Scene, asked: Option<&str>) -> Result<Side, Failure> {
     Err(Failure::User(anyhow!("{}: {problem}", scene.path.display())))
 }
 
+/// Ball loads of the steps of a run.
+struct BallLoads {
+    /// Lines of the table.
+    table: String,
+    /// Steps whose balls stand where the matrix has none.
+    left_out: usize,
+    /// Largest distance from the forces of the run, N.
+    worst: f64,
+    /// Largest force of the run, N.
+    largest: f64,
+}
+
+impl BallLoads {
+    /// Adds a step, its number and time, s: places of its balls in the matrix with the loads of all places, N, and the
+    /// forces that the run has, N; None: it is left out.
+    fn add(&mut self, (step, time): (f64, f64), found: Option<(Vec<usize>, Vec<f64>)>, known: &[f64]) {
+        let Some((places, loads)) = found else {
+            self.left_out += 1;
+            return;
+        };
+        for (ball, (&place, &known)) in places.iter().zip(known).enumerate() {
+            let load = loads[place];
+            self.worst = self.worst.max((load - known).abs());
+            self.largest = self.largest.max(known.abs());
+            self.table += &format!("{:?},{time:?},{ball},{load:?},{known:?}\n", step as u64);
+        }
+    }
+}
+
+fn table_of(dir: &Path, name: &str, expected: &str) -> anyhow::Result<Table> {
+    Table::read(dir, name)?.with_context(|| format!("{} has no {name}; expected {expected}", dir.display()))
+}
+
+/// Fails where no step has its balls at the places of the matrix.
+fn require_steps(
+    found: &BallLoads,
+    probes: &Table,
+    matrix: &LoadMatrix,
+    command: &BallLoadsCommand,
+) -> Result<(), Failure> {
+    if found.left_out == probes.n_rows() {
+        return Err(Failure::User(anyhow!(
+            "no step of {} has its {} balls at the places of {}; expected equal numbers, and steps at which a ball \
+             stands where the matrix has one",
+            command.dir.display(),
+            matrix.ball_azimuths_rad.len(),
+            command.matrix.display()
+        )));
+    }
+    Ok(())
+}
+
 /// Writes the ball loads of a run.
 pub fn ball_loads(command: &BallLoadsCommand) -> Result<(), Failure> {
     let dir = &command.dir;
     let matrix = LoadMatrix::read(&command.matrix)?;
     let inverse = matrix.inverse()?;
-    let probes = Table::read(dir, "probes.csv")?.with_context(|| {
-        format!(
-            "{} has no probes.csv; expected the results of a scene with gauges",
-            dir.display()
-        )
-    })?;
-    let balls = Table::read(dir, "balls.csv")?.with_context(|| {
-        format!(
-            "{} has no balls.csv; expected the results of a run",
-            dir.display()
-        )
-    })?;
+    let probes = table_of(dir, "probes.csv", "the results of a scene with gauges")?;
+    let balls = table_of(dir, "balls.csv", "the results of a run")?;
     warn_of_doubts(dir)?;
     let columns = matrix
         .gauges
@@ -150,8 +192,14 @@ pub fn ball_loads(command: &BallLoadsCommand) -> Result<(), Failure> {
     let (ball_steps, azimuths) = (balls.column("step")?, balls.column("azimuth_rad")?);
     let true_forces = balls.column(&format!("{}_force_n", side.name()))?;
     let head = format!("step,time_s,ball,load_n,{}_force_n\n", side.name());
-    let (mut table, mut left_out, mut worst, mut largest) = (head.clone(), 0, 0.0f64, 0.0f64);
+    let mut found = BallLoads {
+        table: head.clone(),
+        left_out: 0,
+        worst: 0.0,
+        largest: 0.0,
+    };
     for row in 0..probes.n_rows() {
+        let step = (steps[row], times[row]);
         let own: Vec<usize> = (0..balls.n_rows())
             .filter(|&i| ball_steps[i] == steps[row])
             .collect();
@@ -159,38 +207,26 @@ pub fn ball_loads(command: &BallLoadsCommand) -> Result<(), Failure> {
             .as_ref()
             .map_or(0.0, |speeds| speeds.of(side).angle(times[row]));
         let stand: Vec<f64> = own.iter().map(|&i| azimuths[i] - turned).collect();
-        let Some(places) = matrix.places(&stand) else {
-            left_out += 1;
-            continue;
-        };
+        let known: Vec<f64> = own.iter().map(|&i| true_forces[i]).collect();
         let strains: Vec<f64> = columns.iter().map(|column| column[row]).collect();
-        let loads = inverse.loads(&strains);
-        for (ball, (&place, &i)) in places.iter().zip(&own).enumerate() {
-            let (load, known) = (loads[place], true_forces[i]);
-            worst = worst.max((load - known).abs());
-            largest = largest.max(known.abs());
-            table += &format!(
-                "{:?},{:?},{ball},{load:?},{known:?}\n",
-                steps[row] as u64, times[row]
-            );
-        }
+        let places = matrix.places(&stand);
+        found.add(
+            step,
+            places.map(|places| (places, inverse.loads(&strains))),
+            &known,
+        );
     }
-    if left_out == probes.n_rows() {
-        return Err(Failure::User(anyhow!(
-            "no step of {} has its {} balls at the places of {}; expected equal numbers, and steps at which a ball \
-             stands where the matrix has one",
-            dir.display(),
-            matrix.ball_azimuths_rad.len(),
-            command.matrix.display()
-        )));
-    }
+    require_steps(&found, &probes, &matrix, command)?;
     let path = dir.join(LOADS);
-    write(&path, table.as_bytes(), |old| old.starts_with(head.as_bytes()))?;
+    write(&path, found.table.as_bytes(), |old| {
+        old.starts_with(head.as_bytes())
+    })?;
     print::line(format_args!(
-        "{} steps, {left_out} left out with balls elsewhere; loads differ from those of the run by {:.3} % of the \
+        "{} steps, {} left out with balls elsewhere; loads differ from those of the run by {:.3} % of the \
          largest at most; {LOADS} in {}",
-        probes.n_rows() - left_out,
-        100.0 * worst / largest.max(f64::MIN_POSITIVE),
+        probes.n_rows() - found.left_out,
+        found.left_out,
+        100.0 * found.worst / found.largest.max(f64::MIN_POSITIVE),
         dir.display()
     ));
     Ok(())

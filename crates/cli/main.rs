@@ -11,6 +11,7 @@ mod export;
 mod help;
 mod info;
 mod init;
+mod instants;
 mod ledger_check;
 mod linear_figures;
 mod load_matrix;
@@ -40,6 +41,7 @@ mod several_stiffness;
 mod shared;
 mod start;
 mod stiffness;
+mod stored;
 
 use std::ffi::OsString;
 use std::os::unix::process::CommandExt;
@@ -48,7 +50,7 @@ use std::process::ExitCode;
 
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 use comm::print::Manner;
-use comm::{Communicator, End, Environment, print};
+use comm::{Communicator, Environment, ProcessEnd, print};
 use heat::HeatCommand;
 use life::LifeCommand;
 use plot::Plot;
@@ -62,13 +64,13 @@ use spectrum::{SpallLengthCommand, SpectrumCommand};
 use crate::campbell::CampbellCommand;
 use crate::cycles::Cycles;
 use crate::export::Export;
-use crate::info::Depth;
+use crate::info::Inspection;
 use crate::init::Init;
 use crate::load_matrix::{BallLoadsCommand, LoadMatrixCommand};
 use crate::mesh_command::MeshCommand;
 use crate::options::{Limits, Part, parse_part};
 use crate::pack::Pack;
-use crate::resume::Request;
+use crate::resume::ResumeRequest;
 use crate::stiffness::StiffnessCommand;
 
 /// Options of all commands stand behind those of a command in its help.
@@ -128,7 +130,7 @@ enum Command {
         limits: Limits,
     },
     /// Goes on with a motion from its newest whole step, to the same bits as if it had not been interrupted.
-    Resume(Request),
+    Resume(ResumeRequest),
     /// Says what a result folder, a step file or a mesh file holds.
     Info {
         /// Result folder, or a file in it.
@@ -172,11 +174,11 @@ enum Command {
         overrides: Vec<String>,
     },
     /// Runs a grid of settings of a scene and tables errors and costs.
-    Study(study::Request),
+    Study(study::StudyRequest),
     /// Says which settings of a study reach an error at the lowest cost.
     Advise(study::Question),
     /// Turns every effect of a scene off or on and tables what that changes and costs.
-    Prices(study::prices::Request),
+    Prices(study::prices::PricesRequest),
     /// Becomes Gmsh, which then ends with the process that started this one.
     #[command(hide = true)]
     Gmsh {
@@ -246,7 +248,7 @@ fn main() -> ExitCode {
         return ExitCode::SUCCESS;
     };
     let comm = Communicator::world();
-    if end == End::Alone {
+    if end == ProcessEnd::Alone {
         say_of_rank(&failure);
         environment.abort(failure.number());
     }
@@ -332,7 +334,8 @@ fn say_memory_of_ranks() {
     print::line(format_args!("peak memory of the ranks: {} MB", peaks.join(", ")));
 }
 
-fn execute(arguments: Arguments) -> Result<(), Failure> {
+/// Makes the process ready for its command: ranks, memory, threads.
+fn prepare(arguments: &Arguments) -> Result<(), Failure> {
     require_one_task(&arguments.command)?;
     require_address_space()?;
     arguments.parent.map_or(Ok(()), results::stop::end_with)?;
@@ -357,6 +360,11 @@ fn execute(arguments: Arguments) -> Result<(), Failure> {
         let threads = rayon::current_num_threads();
         print::note(format_args!("{ranks} ranks, {threads} threads on rank 0"));
     }
+    Ok(())
+}
+
+fn execute(arguments: Arguments) -> Result<(), Failure> {
+    prepare(&arguments)?;
     match arguments.command {
         Command::Run {
             scene,
@@ -386,9 +394,14 @@ fn execute(arguments: Arguments) -> Result<(), Failure> {
         Command::Gmsh { .. } | Command::Help { .. } | Command::Completions { .. } | Command::Man { .. } => {
             unreachable!("they need no ranks and threads")
         }
-        Command::Info { path, verify } => {
-            info::info(&path, if verify { Depth::Bytes } else { Depth::Structure })
-        }
+        Command::Info { path, verify } => info::info(
+            &path,
+            if verify {
+                Inspection::Bytes
+            } else {
+                Inspection::Structure
+            },
+        ),
         Command::Init(request) => init::init(&request),
         Command::Pack(request) => pack::pack(&request),
         Command::Cycles(request) => cycles::cycles(&request),

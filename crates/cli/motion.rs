@@ -4,16 +4,15 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use std::time::Instant;
 
-use anyhow::anyhow;
 use comm::print;
 use contact::Side;
+use dynamics::Model;
 use dynamics::costs::{EFFECTS, FACTOR};
 use dynamics::motion::ledger::LOSSY;
 use dynamics::motion::{Motion, MotionState, StepCache};
-use dynamics::{DynamicsError, Model};
 use results::console;
 use results::disk::Forecast;
-use results::failure::{Failure, agree, of_all};
+use results::failure::{Failure, agree};
 use results::files::{Files, ResumedFrom};
 use results::memory::Forecasts;
 use results::motion_fields::{Recorded, RestartState};
@@ -27,15 +26,16 @@ use results::watch::Watch;
 use scene::{Dynamic, KeptFields, Scene, settings};
 use timer::{Laps, Stopwatch};
 
+use crate::instants::{self, Due, OverInstants, PROGRESS_STEPS, WrittenSteps};
 use crate::ledger_check::check_ledger;
 use crate::options::Limits;
 use crate::progress::Progress;
 use crate::remarks::Remarks;
-use crate::resume::{RestartedFrom, Stored};
 use crate::start::settle;
+use crate::stored::{RestartedFrom, Stored};
 
-/// Steps between two lines of progress in a log.
-const PROGRESS_STEPS: u64 = 50;
+/// What is saved when a step fails.
+pub const LAST_GOOD: &str = "the last good state";
 
 /// Runs the motion from its static equilibrium.
 pub fn run(
@@ -78,14 +78,10 @@ pub fn run(
         newton: 0,
         laps,
         watch: Watch::new(model.geometry.n_balls),
-        last_file: None,
-        last_state: None,
-        last_row: None,
+        written: WrittenSteps::default(),
         dir,
     };
-    agree(march.reduce())?;
-    agree(march.write_tables())?;
-    agree(march.write_fields(RestartState::Stored))?;
+    instants::record(&mut march, RestartState::Stored)?;
     let costs = StartCosts {
         read,
         forecast: Forecasts::of_motion(settled.forecast, &motion, dynamic),
@@ -135,9 +131,7 @@ pub fn resume(
         model: &model,
         motion: &motion,
         files,
-        last_file: Some(state.step),
-        last_state: Some(state.step),
-        last_row: Some(state.step),
+        written: WrittenSteps::all_of(state.step),
         state,
         cache: StepCache::default(),
         newton,
@@ -196,12 +190,7 @@ struct March<'a> {
     laps: Laps,
     /// Contacts beyond their limits so far.
     watch: Watch,
-    /// The last step handed over to be written.
-    last_file: Option<u64>,
-    /// The last step handed over with its restart state.
-    last_state: Option<u64>,
-    /// The last step with rows in the tables.
-    last_row: Option<u64>,
+    written: WrittenSteps,
     dir: &'a Path,
 }
 
@@ -217,7 +206,7 @@ impl March<'_> {
         let mut clock = Stopwatch::start();
         let first = self.state.step;
         let mut stop = agree(Stop::listen(costs.start, limits.wall_time).map_err(Failure::from))?;
-        let ended = self.steps(&mut progress, &mut stop);
+        let ended = instants::run(&mut self, first + 1, Some(&mut stop), &mut progress);
         progress.finish();
         let seconds = clock.lap();
         let (mut laps, effects) = (self.laps, self.motion.costs.laps());
@@ -261,131 +250,92 @@ impl March<'_> {
         Ok(())
     }
 
-    /// Steps to the end of the run. On failure and when asked to stop, the last good state has its step file.
-    fn steps(&mut self, progress: &mut Progress, stop: &mut Stop) -> Result<(), Failure> {
-        let n_steps = self.dynamic.n_steps;
-        let first = self.state.step + 1;
-        for n in first..=n_steps {
-            let reason = stop.reason();
-            // A step whose file is there without its state is not one to stop at: the next one will be.
-            if let Some(reason) = &reason
-                && (self.last_file != Some(n - 1) || self.last_state == Some(n - 1))
-            {
-                return Err(self.stopped(reason));
-            }
-            if n == first || n % PROGRESS_STEPS == 1 {
-                progress.stage(&format!(
-                    "step {n} of {n_steps}, t = {:.4e} s, waited {:.2} s for the disk",
-                    self.motion.time(n),
-                    self.files.waited().as_secs_f64()
-                ));
-            }
-            match self.motion.step(&self.state, &mut self.cache) {
-                Ok((next, report)) => {
-                    self.newton += report.newton_iterations as u64;
-                    self.laps.merge(&report.laps);
-                    if let Err(failure) = check_ledger(self.dynamic, self.motion, &next, self.dir) {
-                        return Err(self.rejected(next, failure));
-                    }
-                    self.state = next;
-                    let found = self.motion.exceeded(&self.state);
-                    for text in self.watch.note(n, self.motion.time(n), &found) {
-                        progress.warn(&text);
-                    }
-                }
-                Err(error) => return Err(self.failed(error)),
-            }
-            agree(self.reduce())?;
-            if n.is_multiple_of(self.scene.output.tables_every) {
-                agree(self.write_tables())?;
-            }
-            if n == n_steps || n.is_multiple_of(self.dynamic.output_every) {
-                let restart = match reason {
-                    Some(_) => RestartState::Stored,
-                    None => RestartState::at(n, self.dynamic, &self.scene.output),
-                };
-                agree(self.write_fields(restart))?;
-            }
-            progress.advance();
+    /// The fields that the file of this step holds.
+    fn kept(&self) -> KeptFields {
+        let (apart, last) = (self.dynamic.output_every, self.dynamic.n_steps);
+        self.scene.output.every.kept(self.state.step, apart, last)
+    }
+}
+
+impl OverInstants for March<'_> {
+    fn due(&self) -> Due {
+        Due {
+            last: self.dynamic.n_steps,
+            tables_every: self.scene.output.tables_every,
+            files_every: self.dynamic.output_every,
+        }
+    }
+
+    fn written(&mut self) -> &mut WrittenSteps {
+        &mut self.written
+    }
+
+    fn dir(&self) -> &Path {
+        self.dir
+    }
+
+    fn now(&self) -> u64 {
+        self.state.step
+    }
+
+    fn time(&self, n: u64) -> f64 {
+        self.motion.time(n)
+    }
+
+    fn stage(&self, n: u64, first: u64) -> Option<String> {
+        (n == first || n % PROGRESS_STEPS == 1).then(|| {
+            format!(
+                "step {n} of {}, t = {:.4e} s, waited {:.2} s for the disk",
+                self.dynamic.n_steps,
+                self.time(n),
+                self.files.waited().as_secs_f64()
+            )
+        })
+    }
+
+    fn advance(&mut self, n: u64, progress: &mut Progress) -> Result<(), Failure> {
+        let found = self.motion.step(&self.state, &mut self.cache);
+        let (next, report) =
+            found.map_err(|error| instants::failed(self, LAST_GOOD, Failure::solving(error)))?;
+        self.newton += report.newton_iterations as u64;
+        self.laps.merge(&report.laps);
+        if let Err(failure) = check_ledger(self.dynamic, self.motion, &next, self.dir) {
+            return Err(instants::rejected(self, failure, |march| march.state = next));
+        }
+        self.state = next;
+        let found = self.motion.exceeded(&self.state);
+        for text in self.watch.note(n, self.motion.time(n), &found) {
+            progress.warn(&text);
         }
         Ok(())
     }
 
-    /// Saves the state and says that the run can be resumed.
-    fn stopped(&mut self, reason: &str) -> Failure {
-        if let Err(error) = agree(self.write_fields(RestartState::Stored)) {
-            return error.context(format!("{reason}, but the state could not be saved"));
-        }
-        let n = self.state.step;
-        Failure::Stopped(anyhow!(
-            "{reason}; the state after step {n} of {}, t = {:.6e} s, is saved: go on with raceway resume {}",
-            self.dynamic.n_steps,
-            self.motion.time(n),
-            self.dir.display()
-        ))
+    fn restart_at(&self, n: u64) -> RestartState {
+        RestartState::at(n, self.dynamic, &self.scene.output)
     }
 
-    /// Saves the last good state and says where the failed step was.
-    fn failed(&mut self, error: DynamicsError) -> Failure {
-        let failure = of_all(Failure::solving(error));
-        let saved = self.write_fields(RestartState::Stored);
-        let n = self.state.step + 1;
-        let place = format!("step {n}, t = {:.6e} s", self.motion.time(n));
-        match saved {
-            Ok(()) => failure.context(format!(
-                "{place}; the last good state{} is in {}",
-                self.earlier_state(),
-                self.dir.display()
-            )),
-            Err(unsaved) => failure.context(format!(
-                "{place}; the last good state could not be saved: {}",
-                unsaved.text()
-            )),
-        }
+    fn reduce(&mut self) -> Result<(), Failure> {
+        let (model, motion, state) = (self.model, self.motion, &self.state);
+        let shown = Shown::Motion { model, motion, state };
+        self.files
+            .reduce(state.step, motion.time(state.step), &shown, self.scene)
     }
 
-    /// Which step has the last state in a file, if it is an earlier one: the file of the last good step was written
-    /// without.
-    fn earlier_state(&self) -> String {
-        match self.last_state {
-            Some(step) if step < self.state.step => format!(" that is stored, that of step {step},"),
-            _ => String::new(),
-        }
+    fn append_rows(&mut self) -> Result<(), Failure> {
+        let (model, motion, state) = (self.model, self.motion, &self.state);
+        let time = motion.time(state.step);
+        let snapshot = Snapshot::of_motion(motion, state);
+        self.files.write_tables(state.step, time, None, &snapshot)?;
+        let shown = Shown::Motion { model, motion, state };
+        self.files.write_probes(state.step, time, None, &shown)
     }
 
-    /// Saves the last good state. The tables get a line of the state that was rejected, but it gets no step file.
-    fn rejected(&mut self, state: MotionState, failure: Failure) -> Failure {
-        let failure = of_all(failure);
-        let saved = self.write_fields(RestartState::Stored);
-        self.state = state;
-        match saved.and_then(|()| self.write_tables()) {
-            Ok(()) => failure,
-            Err(unsaved) => failure.context(format!(
-                "the last good state could not be saved: {}",
-                unsaved.text()
-            )),
-        }
-    }
-
-    /// Hands over the step to be written as a file, unless it was; ranks recover its stress first. To be called
-    /// by all ranks or none: they must have agreed on what was written before.
-    fn write_fields(&mut self, restart: RestartState) -> Result<(), Failure> {
-        if self.last_file == Some(self.state.step) {
-            return Ok(());
-        }
-        if restart == RestartState::Stored {
-            self.last_state = Some(self.state.step);
-        }
-        if self.last_row != Some(self.state.step) {
-            // A step file vouches for the tables up to its step.
-            agree(self.write_tables())?;
-        }
+    fn append_files(&mut self, restart: RestartState) -> Result<(), Failure> {
         let (model, motion, state) = (self.model, self.motion, &self.state);
         let shown = Shown::Motion { model, motion, state };
         let kept = self.kept();
         let gathered = self.files.gather_stress(&shown, kept);
         if !self.files.are_written_here() {
-            self.last_file = Some(state.step);
             return Ok(());
         }
         let time = motion.time(state.step);
@@ -398,35 +348,7 @@ impl March<'_> {
                 Stored::add_counts(&mut record, newton, &watch);
             }
             record
-        })?;
-        self.last_file = Some(self.state.step);
-        Ok(())
-    }
-
-    /// The fields that the file of this step holds.
-    fn kept(&self) -> KeptFields {
-        let (apart, last) = (self.dynamic.output_every, self.dynamic.n_steps);
-        self.scene.output.every.kept(self.state.step, apart, last)
-    }
-
-    /// Takes the state into account in what is found of the whole run.
-    fn reduce(&mut self) -> Result<(), Failure> {
-        let (model, motion, state) = (self.model, self.motion, &self.state);
-        let shown = Shown::Motion { model, motion, state };
-        self.files
-            .reduce(state.step, motion.time(state.step), &shown, self.scene)
-    }
-
-    /// Appends a line per table.
-    fn write_tables(&mut self) -> Result<(), Failure> {
-        let (model, motion, state) = (self.model, self.motion, &self.state);
-        let time = motion.time(state.step);
-        let snapshot = Snapshot::of_motion(motion, state);
-        self.files.write_tables(state.step, time, None, &snapshot)?;
-        let shown = Shown::Motion { model, motion, state };
-        self.files.write_probes(state.step, time, None, &shown)?;
-        self.last_row = Some(state.step);
-        Ok(())
+        })
     }
 }
 

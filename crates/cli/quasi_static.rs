@@ -9,9 +9,10 @@ use contact::Side;
 use dynamics::kinematics::{Rolling, Speed};
 use dynamics::{Model, QuasiStatic, StaticSolution};
 use results::disk::Forecast;
-use results::failure::{Failure, agree, of_all};
+use results::failure::{Failure, agree};
 use results::files::Files;
 use results::memory::Forecasts;
+use results::motion_fields::RestartState;
 use results::shown::Shown;
 use results::snapshot::Snapshot;
 use results::summary::{Findings, Summary};
@@ -20,12 +21,10 @@ use results::{console, fields, seat};
 use scene::{Scene, rolling};
 use timer::Stopwatch;
 
+use crate::instants::{self, Due, OverInstants, PROGRESS_STEPS, WrittenSteps};
 use crate::options::Limits;
 use crate::progress::Progress;
 use crate::remarks::Remarks;
-
-/// Steps between two lines of progress in a log.
-const PROGRESS_STEPS: u64 = 50;
 
 /// Runs the equilibria.
 pub fn run(
@@ -58,146 +57,71 @@ pub fn run(
         survey,
         &first.warnings,
     );
-    let mut files = agree(files)?;
-    let mut series = Series {
+    let files = agree(files)?;
+    let mut series = QuasiStaticRun {
         scene,
         settings,
         model: &model,
         rolling: rolling.as_ref(),
-        files: &mut files,
+        bearing: &mut bearing,
+        files,
         iterations: [0; 3],
         warnings: Vec::new(),
         warned: 0,
+        step: 0,
         last: first,
+        written: WrittenSteps::default(),
+        dir,
     };
     let mut clock = Stopwatch::start();
-    let ended = series.run(&mut bearing, &mut progress, dir);
+    let ended = series.run(&mut progress);
     let seconds = clock.lap();
     progress.finish();
-    let seat = seat::of_run(&model, &series.last, dir);
-    let findings = series.findings(&ended, remarks);
-    let snapshot = findings.last.clone();
-    let forecast = Side::BOTH.map(|side| bearing.solver.ring(side).map(|r| r.solver.memory));
-    let costs = agree(files.finish(
-        read,
-        Forecasts::at_rest(forecast, &model),
-        bearing.solver.laps(),
-        start,
-    ));
-    // A run that failed says why, not what its failure did to the files.
-    let costs = match (costs, &ended) {
-        (Err(_), Err(_)) => return ended,
-        (costs, _) => costs?,
-    };
-    let summary = Summary::new(scene, &model, findings, &costs)
-        .with_life(life::of_run(scene, dir))
-        .with_seats(agree(seat)?);
-    agree(summary.write(dir).map_err(Failure::from))?;
-    ended?;
-    console::print_snapshot(&snapshot);
-    let steps = settings.n_steps;
-    print::line(format_args!(
-        "{steps} steps of {} s, {:.1} ms per step",
-        settings.step,
-        1e3 * seconds / steps as f64
-    ));
-    summary.print_costs();
-    Ok(())
+    series.finish_run((ended, seconds), remarks, (read, start))
 }
 
 /// A run under way.
-struct Series<'a> {
+struct QuasiStaticRun<'a, 'm> {
     scene: &'a Scene,
     settings: &'a scene::QuasiStatic,
     model: &'a Model,
     rolling: Option<&'a Rolling>,
-    files: &'a mut Files,
+    bearing: &'a mut QuasiStatic<'m>,
+    files: Files,
     /// Steps done, rounds and Newton iterations so far.
     iterations: [usize; 3],
     /// Those of the first instant that had any.
     warnings: Vec<String>,
     /// Number of instants that had some.
     warned: u64,
+    /// Number of the last equilibrium.
+    step: u64,
     /// The last equilibrium.
     last: StaticSolution,
+    written: WrittenSteps,
+    dir: &'a Path,
 }
 
-impl Series<'_> {
+impl QuasiStaticRun<'_, '_> {
     /// Steps to the end of the run. On failure the last equilibrium has its step file.
-    fn run(
-        &mut self,
-        bearing: &mut QuasiStatic<'_>,
-        progress: &mut Progress,
-        dir: &Path,
-    ) -> Result<(), Failure> {
-        self.write(bearing, 0)?;
+    fn run(&mut self, progress: &mut Progress) -> Result<(), Failure> {
+        self.count();
+        instants::record(self, RestartState::Stored)?;
         progress.advance();
-        let n_steps = self.settings.n_steps;
-        for n in 1..=n_steps {
-            if n % PROGRESS_STEPS == 1 {
-                progress.stage(&format!("step {n} of {n_steps}, t = {:.4e} s", bearing.time(n)));
-            }
-            match bearing.step(n, Some(&self.last)) {
-                Ok(next) => self.last = next,
-                Err(error) => {
-                    let failure = of_all(Failure::solving(error));
-                    if !self.has_file(n - 1) {
-                        if !(n - 1).is_multiple_of(self.scene.output.tables_every) {
-                            agree(self.write_tables(bearing.time(n - 1), n - 1))?;
-                        }
-                        agree(self.write_fields(bearing, n - 1))?;
-                    }
-                    let place = format!(
-                        "step {n}, t = {:.6e} s; the last equilibrium is in {}",
-                        bearing.time(n),
-                        dir.display()
-                    );
-                    return Err(failure.context(place));
-                }
-            }
-            self.write(bearing, n)?;
-            progress.advance();
-        }
-        Ok(())
+        instants::run(self, 1, None, progress)
     }
 
-    /// Whether a step's fields are written.
-    fn has_file(&self, step: u64) -> bool {
-        step == self.settings.n_steps || step.is_multiple_of(self.settings.output_every)
-    }
-
-    /// Writes a step and takes note of what it took. Collective.
-    fn write(&mut self, bearing: &QuasiStatic<'_>, step: u64) -> Result<(), Failure> {
-        self.iterations[0] = step as usize;
+    /// Takes note of what the last equilibrium took.
+    fn count(&mut self) {
+        self.iterations[0] = self.step as usize;
         self.iterations[1] += self.last.rounds;
         self.iterations[2] += self.last.newton_iterations;
-        self.note_warnings(bearing.time(step));
-        let reduced = self.files.reduce(
-            step,
-            bearing.time(step),
-            &shown(self.model, &self.last),
-            self.scene,
-        );
-        agree(reduced)?;
-        if step.is_multiple_of(self.scene.output.tables_every) || self.has_file(step) {
-            agree(self.write_tables(bearing.time(step), step))?;
-        }
-        if self.has_file(step) {
-            agree(self.write_fields(bearing, step))?;
-        }
-        Ok(())
-    }
-
-    /// Appends a line per table.
-    fn write_tables(&mut self, time: f64, step: u64) -> Result<(), Failure> {
-        let snapshot = Snapshot::of_equilibrium(&self.last, self.rolling);
-        self.files.write_tables(step, time, None, &snapshot)?;
-        let shown = shown(self.model, &self.last);
-        self.files.write_probes(step, time, None, &shown)
+        self.note_warnings();
     }
 
     /// A long run warns at thousands of instants: the first stands for all.
-    fn note_warnings(&mut self, time: f64) {
+    fn note_warnings(&mut self) {
+        let time = self.time(self.step);
         if self.last.warnings.is_empty() {
             return;
         }
@@ -208,24 +132,46 @@ impl Series<'_> {
         self.warned += 1;
     }
 
-    /// Writes the fields of a step; ranks recover its stress first.
-    fn write_fields(&mut self, bearing: &QuasiStatic<'_>, step: u64) -> Result<(), Failure> {
-        let (model, last, scene) = (self.model, &self.last, self.scene);
-        let kept = scene
-            .output
-            .every
-            .kept(step, self.settings.output_every, self.settings.n_steps);
-        let gathered = self.files.gather_stress(&shown(model, last), kept);
-        let at = (step, bearing.time(step));
-        self.files.write_profiles(step, at.1, None, &shown(model, last))?;
-        self.files.write_fields(|stress| {
-            fields::record(&shown(model, last), last, (stress, gathered), at, (scene, kept))
-        })
+    /// Closes the files, writes the summary, and prints the results of a run without a failure, which took so many
+    /// seconds; it was read until `read`, s, after `start`.
+    fn finish_run(
+        self,
+        (ended, seconds): (Result<(), Failure>, f64),
+        remarks: Remarks,
+        (read, start): (f64, Instant),
+    ) -> Result<(), Failure> {
+        let (scene, model, settings) = (self.scene, self.model, self.settings);
+        let seat = seat::of_run(model, &self.last, self.dir);
+        let findings = self.findings(&ended, remarks);
+        let snapshot = findings.last.clone();
+        let solver = &self.bearing.solver;
+        let forecast = Side::BOTH.map(|side| solver.ring(side).map(|r| r.solver.memory));
+        let forecast = Forecasts::at_rest(forecast, model);
+        let costs = agree(self.files.finish(read, forecast, solver.laps(), start));
+        // A run that failed says why, not what its failure did to the files.
+        let costs = match (costs, &ended) {
+            (Err(_), Err(_)) => return ended,
+            (costs, _) => costs?,
+        };
+        let summary = Summary::new(scene, model, findings, &costs)
+            .with_life(life::of_run(scene, self.dir))
+            .with_seats(agree(seat)?);
+        agree(summary.write(self.dir).map_err(Failure::from))?;
+        ended?;
+        console::print_snapshot(&snapshot);
+        let steps = settings.n_steps;
+        print::line(format_args!(
+            "{steps} steps of {} s, {:.1} ms per step",
+            settings.step,
+            1e3 * seconds / steps as f64
+        ));
+        summary.print_costs();
+        Ok(())
     }
 
-    fn findings(self, ended: &Result<(), Failure>, remarks: Remarks) -> Findings {
+    fn findings(&self, ended: &Result<(), Failure>, remarks: Remarks) -> Findings {
         let [steps, rounds, newton] = self.iterations;
-        let mut warnings = [remarks.warnings, self.warnings].concat();
+        let mut warnings = [remarks.warnings, self.warnings.clone()].concat();
         if self.warned > 1 {
             warnings.push(format!(
                 "{} instants have warnings; those of the first are given",
@@ -243,6 +189,78 @@ impl Series<'_> {
             warnings,
             advice: remarks.advice,
         }
+    }
+}
+
+impl OverInstants for QuasiStaticRun<'_, '_> {
+    fn due(&self) -> Due {
+        Due {
+            last: self.settings.n_steps,
+            tables_every: self.scene.output.tables_every,
+            files_every: self.settings.output_every,
+        }
+    }
+
+    fn written(&mut self) -> &mut WrittenSteps {
+        &mut self.written
+    }
+
+    fn dir(&self) -> &Path {
+        self.dir
+    }
+
+    fn now(&self) -> u64 {
+        self.step
+    }
+
+    fn time(&self, n: u64) -> f64 {
+        self.bearing.time(n)
+    }
+
+    fn stage(&self, n: u64, _first: u64) -> Option<String> {
+        let text = || {
+            format!(
+                "step {n} of {}, t = {:.4e} s",
+                self.settings.n_steps,
+                self.time(n)
+            )
+        };
+        (n % PROGRESS_STEPS == 1).then(text)
+    }
+
+    fn advance(&mut self, n: u64, _progress: &mut Progress) -> Result<(), Failure> {
+        let next = self.bearing.step(n, Some(&self.last));
+        self.last =
+            next.map_err(|error| instants::failed(self, "the last equilibrium", Failure::solving(error)))?;
+        self.step = n;
+        self.count();
+        Ok(())
+    }
+
+    fn reduce(&mut self) -> Result<(), Failure> {
+        let time = self.time(self.step);
+        let shown = shown(self.model, &self.last);
+        self.files.reduce(self.step, time, &shown, self.scene)
+    }
+
+    fn append_rows(&mut self) -> Result<(), Failure> {
+        let (step, time) = (self.step, self.time(self.step));
+        let snapshot = Snapshot::of_equilibrium(&self.last, self.rolling);
+        self.files.write_tables(step, time, None, &snapshot)?;
+        let shown = shown(self.model, &self.last);
+        self.files.write_probes(step, time, None, &shown)
+    }
+
+    fn append_files(&mut self, _restart: RestartState) -> Result<(), Failure> {
+        let (model, last, scene) = (self.model, &self.last, self.scene);
+        let at = (self.step, self.time(self.step));
+        let (apart, n_steps) = (self.settings.output_every, self.settings.n_steps);
+        let kept = scene.output.every.kept(at.0, apart, n_steps);
+        let gathered = self.files.gather_stress(&shown(model, last), kept);
+        self.files.write_profiles(at.0, at.1, None, &shown(model, last))?;
+        self.files.write_fields(|stress| {
+            fields::record(&shown(model, last), last, (stress, gathered), at, (scene, kept))
+        })
     }
 }
 

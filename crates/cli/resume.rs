@@ -9,33 +9,24 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use anyhow::{Context, anyhow};
-use checkpoint::{
-    FolderLock, Stamps, StateArray, StepRecord, has_state, newest_step, read_about, read_any_step,
-    step_file_name,
-};
+use checkpoint::{StepRecord, has_state, newest_step, read_about, read_any_step, step_file_name};
 use clap::Args;
 use comm::print;
-use dynamics::motion::{Motion, MotionState};
 use results::about::{MAY_CHANGE, OVERRIDES, SCENE_FILE, WARNINGS, require_same_meshes, scene_file};
 use results::failure::{Failure, agree};
 use results::integrity::doubts;
-use results::reduction::take_arrays;
-use results::state_arrays::{self, Arrays};
 use results::summary::read_summary;
-use results::watch::Watch;
 use scene::{Analysis, Dynamic, MeshFiles, Scene, difference};
 
 use crate::motion;
 use crate::options::Limits;
-use crate::several_state::Changes;
+use crate::several_state::ListChanges;
 use crate::shared::{acquire, note_unshared, of_root};
-
-/// Array of a step file that counts Newton's iterations since the start of the run.
-const NEWTON: &str = "newton_iterations";
+use crate::stored::Stored;
 
 /// What the command line asks for.
 #[derive(Debug, Args)]
-pub struct Request {
+pub struct ResumeRequest {
     /// Folder of the results.
     pub dir: PathBuf,
     /// Step to go on from; default: the newest whole one with a restart state. Later steps are moved aside.
@@ -54,10 +45,10 @@ pub struct Request {
     pub limits: Limits,
 }
 
-impl Request {
+impl ResumeRequest {
     /// What it says of the scene of a list of bearings.
-    pub fn changes(&self) -> Changes<'_> {
-        Changes {
+    pub fn changes(&self) -> ListChanges<'_> {
+        ListChanges {
             overrides: &self.overrides,
             scene: self.scene.as_deref(),
             is_stored: self.stored_scene,
@@ -65,77 +56,8 @@ impl Request {
     }
 }
 
-/// A step to go on from.
-pub struct Stored {
-    /// The lock of its folder, on rank 0.
-    pub lock: Option<FolderLock>,
-    /// The folder.
-    pub dir: PathBuf,
-    /// Its number.
-    pub step: u64,
-    /// Warnings of the start of the run.
-    pub warnings: Vec<String>,
-    /// What the step tells of the tables; None if it is of a version that kept no checksums of them.
-    pub tables: Option<Stamps>,
-    time: f64,
-    arrays: BTreeMap<String, StateArray>,
-}
-
-/// What a run goes on from.
-pub struct RestartedFrom {
-    /// All that evolves.
-    pub state: MotionState,
-    /// Newton's iterations so far.
-    pub newton: u64,
-    /// Contacts beyond their limits so far.
-    pub watch: Watch,
-    /// What is known of the whole run by `[output.reduction]`.
-    pub reduction: Arrays,
-}
-
-impl Stored {
-    /// Adds what the run counts besides its state.
-    pub fn add_counts(record: &mut StepRecord, newton: u64, watch: &Watch) {
-        let newton = i64::try_from(newton).expect("nobody iterates 2^63 times");
-        record
-            .state
-            .insert(NEWTON.to_string(), StateArray::Integer(vec![newton]));
-        watch.put(&mut record.state);
-    }
-
-    /// The state, and what the run counts besides.
-    pub fn state(&self, motion: &Motion<'_>) -> Result<RestartedFrom, Failure> {
-        let at = || format!("step {} of {}", self.step, self.dir.display());
-        let mut arrays = self.arrays.clone();
-        let reduction = take_arrays(&mut arrays);
-        let newton = match arrays.remove(NEWTON) {
-            Some(StateArray::Integer(count)) if count.len() == 1 => count[0].max(0) as u64,
-            _ => return Err(anyhow!("{} has no count of iterations", at()).into()),
-        };
-        let watch = Watch::take(&mut arrays, motion.n_balls());
-        let watch = watch.ok_or_else(|| anyhow!("{} has no count of contacts beyond their limits", at()))?;
-        let state = state_arrays::load(&arrays, &motion.shape()).with_context(at)?;
-        let time = motion.time(state.step);
-        if state.step != self.step || time.to_bits() != self.time.to_bits() {
-            return Err(anyhow!(
-                "{} says t = {:?} s, but its state is that of step {} at {time:?} s",
-                at(),
-                self.time,
-                state.step
-            )
-            .into());
-        }
-        Ok(RestartedFrom {
-            state,
-            newton,
-            watch,
-            reduction,
-        })
-    }
-}
-
 /// Goes on with a run.
-pub fn resume(request: &Request) -> Result<(), Failure> {
+pub fn resume(request: &ResumeRequest) -> Result<(), Failure> {
     let start = Instant::now();
     let dir = &request.dir;
     let lock = agree(acquire(dir))?;
@@ -190,7 +112,7 @@ struct Read {
 }
 
 /// Reads a step and all that says how to go on from it. May fail on one rank alone.
-fn read(request: &Request, step: u64) -> Result<Read, Failure> {
+fn read(request: &ResumeRequest, step: u64) -> Result<Read, Failure> {
     let dir = &request.dir;
     let path = dir.join(step_file_name(step));
     let (record, about) = (read_any_step(dir, step)?, read_about(&path)?);
@@ -323,7 +245,7 @@ fn note_version(about: &BTreeMap<String, String>) {
 
 /// The stored scene with the changes asked for, when these and the scene file allow it.
 fn scene_of(
-    request: &Request,
+    request: &ResumeRequest,
     record: &StepRecord,
     about: &BTreeMap<String, String>,
 ) -> Result<Scene, Failure> {

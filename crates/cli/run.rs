@@ -5,19 +5,21 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use anyhow::anyhow;
-use contact::Side;
+use contact::{BearingGeometry, Side};
 use dynamics::{DynamicsError, Model, StaticSolution, StaticSolver};
 use results::disk::Forecast;
 use results::failure::{Failure, agree, of_all};
 use results::files::Files;
 use results::memory::Forecasts;
+use results::motion_fields::RestartState;
 use results::shown::Shown;
 use results::snapshot::Snapshot;
 use results::summary::{Costs, Findings, Summary};
-use results::survey::build_surveyed;
+use results::survey::{Survey, build_surveyed};
 use results::{console, fields, folder, seat};
 use scene::{Analysis, AnyScene, Scene, SeveralScene, have_same_rings, model_with_rings, rolling};
 
+use crate::instants::{self, Due, OverInstants, WrittenSteps};
 use crate::modes;
 use crate::motion;
 use crate::options::{Limits, Part};
@@ -28,7 +30,7 @@ use crate::shared::note_unshared;
 use crate::{several, several_motion};
 
 /// One load case of a run: the swept value (None for a static scene) and its scene.
-pub type Point = (Option<f64>, Scene);
+pub type SweptScene = (Option<f64>, Scene);
 
 /// A finished point.
 struct Solved {
@@ -59,91 +61,178 @@ pub fn run(
     let dir = folder::choose(path, out)?;
     note_unshared(&scene);
     match &scene.analysis {
-        Analysis::Dynamic(dynamic) => {
-            return motion::run(&scene, dynamic, &dir, limits, start).map(|()| dir);
-        }
+        Analysis::Dynamic(dynamic) => motion::run(&scene, dynamic, &dir, limits, start).map(|()| dir),
         Analysis::QuasiStatic(settings) => {
-            return quasi_static::run(&scene, settings, &dir, limits, start).map(|()| dir);
+            quasi_static::run(&scene, settings, &dir, limits, start).map(|()| dir)
         }
-        Analysis::Modes(wanted) => {
-            return modes::run(&scene, wanted, &dir, limits, start).map(|()| dir);
-        }
-        Analysis::Static | Analysis::Sweep(_) => {}
+        Analysis::Modes(wanted) => modes::run(&scene, wanted, &dir, limits, start).map(|()| dir),
+        Analysis::Static | Analysis::Sweep(_) => run_points(&scene, part, &dir, limits, start).map(|()| dir),
     }
-    let all = agree(points(&scene))?;
+}
+
+/// Runs the load cases of a scene, or a part of them.
+fn run_points(
+    scene: &Scene,
+    part: Option<Part>,
+    dir: &Path,
+    limits: &Limits,
+    start: Instant,
+) -> Result<(), Failure> {
+    let all = agree(points(scene))?;
     let chosen = part.map_or(0..all.len(), Part::range);
-    let (first, points) = (chosen.start, &all[chosen]);
+    let (first, points) = (chosen.start as u64, &all[chosen]);
     let mut progress = Progress::new(points.len() as u64);
     progress.stage("reading meshes");
-    let (mut model, mut survey) = agree(build_surveyed(&points[0].1, &scene, &dir, |model| {
-        Forecast::new(&scene, model, 0).require_space(&dir, limits.ignore_disk_space)
+    let (model, mut survey) = agree(build_surveyed(&points[0].1, scene, dir, |model| {
+        Forecast::new(scene, model, 0).require_space(dir, limits.ignore_disk_space)
     }))?;
-    let remarks = Remarks::on(&scene, &model, std::mem::take(&mut survey.doubts))?;
-    let placed = model.geometry;
+    let remarks = Remarks::on(scene, &model, std::mem::take(&mut survey.doubts))?;
     let read = start.elapsed().as_secs_f64();
     progress.stage("factoring the stiffness of the rings");
-    let mut solver = StaticSolver::new(&model).map_err(Failure::solving)?;
+    let solver = StaticSolver::new(&model).map_err(Failure::solving)?;
     say_solvers(&solver, &progress);
-    let mut solutions: Vec<Solved> = Vec::new();
-    let mut results: Option<Files> = None;
-    let mut failure = None;
-    for (step, (value, point)) in points.iter().enumerate() {
-        progress.stage(&stage_text(&scene, *value));
-        model = model_with_rings(point, model.rings)?;
-        let before = solutions.last().map(|s| &s.solution);
-        let solution = match solver.solve(&model, before) {
-            Ok(solution) => solution,
-            Err(error) => {
-                failure = Some(of_all(at_point(error, &scene, *value, &dir, step)));
-                break;
-            }
+    let mut sweep = LoadCases {
+        scene,
+        points,
+        first,
+        placed: model.geometry,
+        model,
+        solver,
+        survey,
+        files: None,
+        solutions: Vec::new(),
+        written: WrittenSteps::default(),
+        dir,
+    };
+    let ended = instants::run(&mut sweep, first, None, &mut progress);
+    progress.finish();
+    // Points that were solved get their summary, whatever came after them.
+    if let Some(files) = sweep.files.take() {
+        let (model, solver) = (&sweep.model, &sweep.solver);
+        let forecast = Side::BOTH.map(|side| solver.ring(side).map(|r| r.solver.memory));
+        let costs = agree(files.finish(read, Forecasts::at_rest(forecast, model), solver.laps(), start));
+        // A run that failed says why, not what its failure did to the files.
+        let costs = match (costs, &ended) {
+            (Err(_), Err(_)) => return ended,
+            (costs, _) => costs?,
         };
-        // The first solution makes the folder: a scene that has none leaves no files.
+        conclude(scene, (model, &sweep.solutions), &ended, remarks, &costs, dir)?;
+    }
+    ended
+}
+
+/// Load cases under way: their numbers stand for times.
+struct LoadCases<'a> {
+    scene: &'a Scene,
+    points: &'a [SweptScene],
+    /// Number of the first of them in the whole sweep.
+    first: u64,
+    /// Geometry with which the rings were placed.
+    placed: BearingGeometry,
+    model: Model,
+    solver: StaticSolver,
+    /// What the files begin with, until there are some.
+    survey: Survey,
+    /// The first solution makes the folder: a scene that has none leaves no files.
+    files: Option<Files>,
+    solutions: Vec<Solved>,
+    written: WrittenSteps,
+    dir: &'a Path,
+}
+
+impl LoadCases<'_> {
+    fn point(&self, n: u64) -> &SweptScene {
+        &self.points[(n - self.first) as usize]
+    }
+
+    /// What has been solved last, with its files and its load case.
+    fn last(&mut self) -> (&mut Files, Shown<'_>, &Solved, &SweptScene) {
+        let point = &self.points[self.solutions.len() - 1];
+        let files = self.files.as_mut().expect("a solution has made the files");
+        let solved = self.solutions.last().expect("a load case has been solved");
+        let shown = Shown::at_rest(&self.model, &self.placed, &solved.solution);
+        (files, shown, solved, point)
+    }
+}
+
+impl OverInstants for LoadCases<'_> {
+    fn due(&self) -> Due {
+        Due {
+            last: self.first + self.points.len() as u64 - 1,
+            tables_every: 1,
+            files_every: 1,
+        }
+    }
+
+    fn written(&mut self) -> &mut WrittenSteps {
+        &mut self.written
+    }
+
+    fn dir(&self) -> &Path {
+        self.dir
+    }
+
+    fn now(&self) -> u64 {
+        self.first + self.solutions.len() as u64 - 1
+    }
+
+    fn time(&self, n: u64) -> f64 {
+        n as f64
+    }
+
+    fn stage(&self, n: u64, _first: u64) -> Option<String> {
+        Some(stage_text(self.scene, self.point(n).0))
+    }
+
+    fn advance(&mut self, n: u64, _progress: &mut Progress) -> Result<(), Failure> {
+        let (value, point) = &self.points[(n - self.first) as usize];
+        self.model = model_with_rings(point, self.model.rings.clone())?;
+        let before = self.solutions.last().map(|s| &s.solution);
+        let found = self.solver.solve(&self.model, before);
+        let done = self.solutions.len();
+        let solution = found.map_err(|error| of_all(at_point(error, self.scene, *value, self.dir, done)))?;
         let snapshot = Snapshot::of_equilibrium(&solution, rolling(point).as_ref());
-        let files = match &mut results {
-            Some(files) => files,
-            empty => {
-                let files = Files::create(&scene, &model, &dir, &snapshot, std::mem::take(&mut survey), &[]);
-                empty.insert(agree(files)?)
-            }
-        };
-        // The points of a sweep have no time; their number stands for it.
-        let step = first + step;
-        let (step, time) = (step as u64, step as f64);
-        let shown = Shown::at_rest(&model, &placed, &solution);
-        // All ranks recover stress; then rank 0 writes, and may fail alone.
-        let last = (first + points.len() - 1) as u64;
-        let kept = scene.output.every.kept(step, 1, last);
-        let gathered = files.gather_stress(&shown, kept);
-        let write = || {
-            files.reduce(step, time, &shown, &scene)?;
-            files.write_tables(step, time, *value, &snapshot)?;
-            files.write_probes(step, time, *value, &shown)?;
-            files.write_profiles(step, time, *value, &shown)?;
-            files.write_fields(|stress| {
-                fields::record(&shown, &solution, (stress, gathered), (step, time), (point, kept))
-            })
-        };
-        agree(write())?;
+        if self.files.is_none() {
+            let survey = std::mem::take(&mut self.survey);
+            let files = Files::create(self.scene, &self.model, self.dir, &snapshot, survey, &[]);
+            self.files = Some(agree(files)?);
+        }
         // Later points start from displacements of the contacts only; fields of a long sweep would fill the memory.
-        if let Some(earlier) = solutions.last_mut() {
+        if let Some(earlier) = self.solutions.last_mut() {
             earlier.solution.elastic = [None, None];
         }
-        solutions.push(Solved {
+        self.solutions.push(Solved {
             value: value.unwrap_or(0.0),
             solution,
             snapshot,
         });
-        progress.advance();
+        Ok(())
     }
-    progress.finish();
-    // Points that were solved get their summary, whatever came after them.
-    if let Some(files) = results {
-        let forecast = Side::BOTH.map(|side| solver.ring(side).map(|r| r.solver.memory));
-        let costs = agree(files.finish(read, Forecasts::at_rest(forecast, &model), solver.laps(), start))?;
-        conclude(&scene, (&model, &solutions), &failure, remarks, &costs, &dir)?;
+
+    fn reduce(&mut self) -> Result<(), Failure> {
+        let (step, scene) = (self.now(), self.scene);
+        let (files, shown, ..) = self.last();
+        files.reduce(step, step as f64, &shown, scene)
     }
-    failure.map_or(Ok(dir), Err)
+
+    fn append_rows(&mut self) -> Result<(), Failure> {
+        let step = self.now();
+        let (files, shown, solved, (value, _)) = self.last();
+        files.write_tables(step, step as f64, *value, &solved.snapshot)?;
+        files.write_probes(step, step as f64, *value, &shown)
+    }
+
+    fn append_files(&mut self, _restart: RestartState) -> Result<(), Failure> {
+        let (step, last) = (self.now(), self.due().last);
+        let kept = self.scene.output.every.kept(step, 1, last);
+        let (files, shown, solved, (value, point)) = self.last();
+        let (time, solution) = (step as f64, &solved.solution);
+        let gathered = files.gather_stress(&shown, kept);
+        files.write_profiles(step, time, *value, &shown)?;
+        files.write_fields(|stress| {
+            fields::record(&shown, solution, (stress, gathered), (step, time), (point, kept))
+        })
+    }
 }
 
 /// Runs a list of bearings and returns the folder of its results.
@@ -167,15 +256,15 @@ fn run_list(
 fn conclude(
     scene: &Scene,
     (model, solutions): (&Model, &[Solved]),
-    failure: &Option<Failure>,
+    ended: &Result<(), Failure>,
     remarks: Remarks,
     costs: &Costs,
     dir: &Path,
 ) -> Result<(), Failure> {
-    let findings = findings(scene, solutions, failure, remarks);
+    let findings = findings(scene, solutions, ended, remarks);
     let summary = summary(scene, (model, solutions), findings, costs, dir)?;
     agree(summary.write(dir).map_err(Failure::from))?;
-    if failure.is_none() {
+    if ended.is_ok() {
         print_results(scene, solutions, &summary);
     }
     Ok(())
@@ -215,11 +304,14 @@ fn print_results(scene: &Scene, solutions: &[Solved], summary: &Summary) {
     summary.print_costs();
 }
 
-fn findings(scene: &Scene, solutions: &[Solved], failure: &Option<Failure>, remarks: Remarks) -> Findings {
+fn findings(scene: &Scene, solutions: &[Solved], ended: &Result<(), Failure>, remarks: Remarks) -> Findings {
     let last = solutions.last().expect("a finished run has a solution");
     let points = solutions.iter().map(|s| (s.value, s.snapshot.clone()));
     Findings {
-        status: failure.as_ref().map_or("finished".to_string(), Failure::status),
+        status: ended
+            .as_ref()
+            .err()
+            .map_or("finished".to_string(), Failure::status),
         last: last.snapshot.clone(),
         points: points.collect(),
         iterations: BTreeMap::from([
@@ -245,7 +337,7 @@ fn warnings(scene: &Scene, Solved { value, solution, .. }: &Solved) -> Vec<Strin
 }
 
 /// The load cases of a scene: one, or those of its sweep.
-pub fn points(scene: &Scene) -> Result<Vec<Point>, Failure> {
+pub fn points(scene: &Scene) -> Result<Vec<SweptScene>, Failure> {
     let Analysis::Sweep(sweep) = &scene.analysis else {
         return Ok(vec![(None, scene.clone())]);
     };

@@ -8,6 +8,7 @@ use scene::{Analysis, SeveralScene, ShaftKind, build_assembly, have_same_rings};
 
 use crate::ring_sizes::print_rings;
 use crate::several_read::{all_doubts, surveys};
+use crate::shared::print_effects;
 
 /// Prints what a run would be.
 pub fn check(scene: &SeveralScene) -> Result<(), Failure> {
@@ -17,25 +18,8 @@ pub fn check(scene: &SeveralScene) -> Result<(), Failure> {
         "scene    {}",
         scene.title.as_deref().unwrap_or("(no title)")
     ));
-    match &scene.analysis {
-        Analysis::Sweep(sweep) => print::line(format_args!(
-            "analysis sweep of {} over {} values",
-            sweep.key,
-            sweep.points.len()
-        )),
-        Analysis::Dynamic(dynamic) => print::line(format_args!(
-            "analysis dynamic: {} steps of {} s, a step file of each bearing every {}",
-            dynamic.n_steps, dynamic.step, dynamic.output_every
-        )),
-        _ => print::line(format_args!("analysis static")),
-    }
-    let names = scene.effects.names();
-    let effects = if names.is_empty() {
-        "none".to_string()
-    } else {
-        names.join(", ")
-    };
-    print::line(format_args!("effects  {effects}"));
+    print_analysis(scene);
+    print_effects(&scene.effects.names());
     let mut peak = 0;
     for (i, bearing) in scene.bearings.iter().enumerate() {
         let geometry = &assembly.bearings[i].model.geometry;
@@ -76,6 +60,21 @@ pub fn check(scene: &SeveralScene) -> Result<(), Failure> {
     answer::add("peak_memory_bytes", peak);
     answer::add("shaft_dofs", assembly.shaft.n());
     Ok(())
+}
+
+fn print_analysis(scene: &SeveralScene) {
+    match &scene.analysis {
+        Analysis::Sweep(sweep) => print::line(format_args!(
+            "analysis sweep of {} over {} values",
+            sweep.key,
+            sweep.points.len()
+        )),
+        Analysis::Dynamic(dynamic) => print::line(format_args!(
+            "analysis dynamic: {} steps of {} s, a step file of each bearing every {}",
+            dynamic.n_steps, dynamic.step, dynamic.output_every
+        )),
+        _ => print::line(format_args!("analysis static")),
+    }
 }
 
 fn print_shaft(scene: &SeveralScene, shaft: &assembly::ShaftBody) {

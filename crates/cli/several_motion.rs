@@ -7,25 +7,30 @@
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use anyhow::anyhow;
 use assembly::motion::AssemblyCache;
 use assembly::{Assembly, AssemblyMotion, AssemblySolver, AssemblyState};
 use comm::{Communicator, print};
+use dynamics::Model;
 use dynamics::costs::{EFFECTS, FACTOR};
-use results::failure::{Failure, agree, of_all};
-use results::files::Files;
+use results::cut::Cut;
+use results::failure::{Failure, agree};
+use results::files::{Files, ResumedFrom};
 use results::memory::Forecasts;
 use results::motion_fields::{Recorded, RestartState};
 use results::seat;
 use results::several::{ListState, SeveralFindings, SeveralSummary, SeveralTables, print_solution};
 use results::shown::Shown;
 use results::snapshot::Snapshot;
+use results::state_arrays::Arrays;
 use results::stop::Stop;
 use results::summary::{Findings, READ, Summary, TOTAL};
+use results::survey::Survey;
 use results::watch::Watch;
 use scene::{Dynamic, Scene, SeveralScene};
 use timer::{Laps, Stopwatch};
 
+use crate::instants::{self, Due, OverInstants, PROGRESS_STEPS, WrittenSteps};
+use crate::motion::LAST_GOOD;
 use crate::options::Limits;
 use crate::progress::Progress;
 use crate::several::{self, make_folder, of_seats, require_same_list, say_types, solving, warnings_at};
@@ -34,9 +39,6 @@ use crate::several_read::{ReadList, read_list, require_memory_of_all};
 use crate::several_ready::{ready, require_space};
 use crate::several_state;
 use crate::shared::note_unshared;
-
-/// Steps between two lines of progress in a log.
-const PROGRESS_STEPS: u64 = 50;
 
 /// Runs the motion from its equilibrium.
 pub fn run(
@@ -77,19 +79,7 @@ pub fn run(
     agree(make_folder(scene, dir))?;
     let first = ListState::of_motion(&assembly, &motion, &state);
     let tables = agree(SeveralTables::create(dir, None, &first).map_err(Failure::from))?;
-    let mut files = Vec::new();
-    for (i, (placed, survey)) in placed.iter().zip(surveys).enumerate() {
-        let first = Snapshot::of_motion(&motion.bearings[i], &state.bearings[i]);
-        let (model, own) = (&assembly.bearings[i].model, dir.join(&scene.bearings[i].name));
-        files.push(agree(Files::create_part(
-            placed,
-            model,
-            &own,
-            &first,
-            survey,
-            &[],
-        ))?);
-    }
+    let files = create_files((scene, dir), (&assembly, &motion, &state), &placed, surveys)?;
     let mut march = ListMarch {
         watches: new_watches(&assembly),
         scene,
@@ -104,14 +94,10 @@ pub fn run(
         newton: 0,
         laps,
         worst_defect: 0.0,
-        last_file: None,
-        last_state: None,
-        last_row: None,
+        written: WrittenSteps::default(),
         dir,
     };
-    agree(march.reduce())?;
-    agree(march.write_tables())?;
-    agree(march.write_fields(RestartState::Stored))?;
+    instants::record(&mut march, RestartState::Stored)?;
     march.finish_run(progress, limits, warnings, start)
 }
 
@@ -119,7 +105,7 @@ pub fn run(
 pub fn resume_run(
     dir: &Path,
     step: Option<u64>,
-    changes: several_state::Changes<'_>,
+    changes: several_state::ListChanges<'_>,
     limits: &Limits,
 ) -> Result<(), Failure> {
     let start = Instant::now();
@@ -164,30 +150,14 @@ fn resume(stored: several_state::StoredList, limits: &Limits, start: Instant) ->
     let cuts = agree(SeveralTables::cuts(&dir, &first, step).map_err(Failure::from))?;
     let (mut files, mut placed) = (Vec::new(), Vec::new());
     for (i, (bearing, survey)) in bearings.into_iter().zip(surveys).enumerate() {
-        let own = Snapshot::of_motion(&motion.bearings[i], &restored.state.bearings[i]);
-        let model = &assembly.bearings[i].model;
-        let from = results::files::ResumedFrom {
-            step,
-            tables: bearing.record.tables.as_ref(),
-            warnings: &[],
-            reduction: &restored.reductions[i],
-        };
-        let (lock, scene) = (bearing.lock, &bearing.scene);
-        files.push(agree(Files::resume(scene, model, lock, &own, survey, &from))?);
-        placed.push(bearing.scene);
+        let (motion, state) = (&motion.bearings[i], &restored.state.bearings[i]);
+        let (model, reduction) = (&assembly.bearings[i].model, &restored.reductions[i]);
+        let found = (Snapshot::of_motion(motion, state), reduction);
+        let (own, scene) = resume_files(bearing, model, survey, found)?;
+        files.push(own);
+        placed.push(scene);
     }
-    if Communicator::world().is_root() {
-        results::files::say_folder(&dir);
-    }
-    let mut aside = None;
-    let mut make_aside = || -> anyhow::Result<PathBuf> {
-        match &aside {
-            Some(folder) => Ok(PathBuf::clone(folder)),
-            None => Ok(aside.insert(checkpoint::new_superseded_folder(&dir)?).clone()),
-        }
-    };
-    let tables = SeveralTables::resume(&cuts, &mut make_aside).map_err(Failure::from);
-    let tables = agree(tables)?;
+    let tables = resume_tables(&cuts, &dir)?;
     let march = ListMarch {
         scene: &scene,
         dynamic: &dynamic,
@@ -202,12 +172,66 @@ fn resume(stored: several_state::StoredList, limits: &Limits, start: Instant) ->
         laps,
         watches: restored.watches,
         worst_defect: 0.0,
-        last_file: Some(step),
-        last_state: Some(step),
-        last_row: Some(step),
+        written: WrittenSteps::all_of(step),
         dir: &dir,
     };
     march.finish_run(progress, limits, warnings, start)
+}
+
+/// Makes the files of all bearings.
+fn create_files(
+    (scene, dir): (&SeveralScene, &Path),
+    (assembly, motion, state): (&Assembly, &AssemblyMotion<'_>, &AssemblyState),
+    placed: &[Scene],
+    surveys: Vec<Survey>,
+) -> Result<Vec<Files>, Failure> {
+    let mut files = Vec::new();
+    for (i, (placed, survey)) in placed.iter().zip(surveys).enumerate() {
+        let first = Snapshot::of_motion(&motion.bearings[i], &state.bearings[i]);
+        let (model, own) = (&assembly.bearings[i].model, dir.join(&scene.bearings[i].name));
+        files.push(agree(Files::create_part(
+            placed,
+            model,
+            &own,
+            &first,
+            survey,
+            &[],
+        ))?);
+    }
+    Ok(files)
+}
+
+/// Opens the files of a bearing to go on after the step that was read, at which it is as in the snapshot; returns its
+/// scene too.
+fn resume_files(
+    bearing: several_state::StoredBearing,
+    model: &Model,
+    survey: Survey,
+    (own, reduction): (Snapshot, &Arrays),
+) -> Result<(Files, Scene), Failure> {
+    let from = ResumedFrom {
+        step: bearing.record.step,
+        tables: bearing.record.tables.as_ref(),
+        warnings: &[],
+        reduction,
+    };
+    let files = Files::resume(&bearing.scene, model, bearing.lock, &own, survey, &from);
+    Ok((agree(files)?, bearing.scene))
+}
+
+/// Opens the tables beside the folders of the bearings; what stands after the step is moved aside.
+fn resume_tables(cuts: &[Cut], dir: &Path) -> Result<SeveralTables, Failure> {
+    if Communicator::world().is_root() {
+        results::files::say_folder(dir);
+    }
+    let mut aside = None;
+    let mut make_aside = || -> anyhow::Result<PathBuf> {
+        match &aside {
+            Some(folder) => Ok(PathBuf::clone(folder)),
+            None => Ok(aside.insert(checkpoint::new_superseded_folder(dir)?).clone()),
+        }
+    };
+    agree(SeveralTables::resume(cuts, &mut make_aside).map_err(Failure::from))
 }
 
 fn new_watches(assembly: &Assembly) -> Vec<Watch> {
@@ -236,10 +260,7 @@ struct ListMarch<'a> {
     watches: Vec<Watch>,
     /// Largest energy defect of shaft and bearings since the start of this process, over the largest energy.
     worst_defect: f64,
-    /// The last step handed over to be written, with its restart state, and with rows in the tables.
-    last_file: Option<u64>,
-    last_state: Option<u64>,
-    last_row: Option<u64>,
+    written: WrittenSteps,
     dir: &'a Path,
 }
 
@@ -255,7 +276,7 @@ impl ListMarch<'_> {
         let mut clock = Stopwatch::start();
         let first = self.state.step;
         let mut stop = agree(Stop::listen(start, limits.wall_time).map_err(Failure::from))?;
-        let ended = self.steps(&mut progress, &mut stop);
+        let ended = instants::run(&mut self, first + 1, Some(&mut stop), &mut progress);
         progress.finish();
         let seconds = clock.lap();
         for motion in &self.motion.bearings {
@@ -330,52 +351,11 @@ impl ListMarch<'_> {
         Ok(warnings)
     }
 
-    /// Steps to the end of the run. On failure and when asked to stop, the last good state has its step files.
-    fn steps(&mut self, progress: &mut Progress, stop: &mut Stop) -> Result<(), Failure> {
-        let n_steps = self.dynamic.n_steps;
-        let first = self.state.step + 1;
-        for n in first..=n_steps {
-            let reason = stop.reason();
-            if let Some(reason) = &reason
-                && (self.last_file != Some(n - 1) || self.last_state == Some(n - 1))
-            {
-                return Err(self.stopped(reason));
-            }
-            if n == first || n % PROGRESS_STEPS == 1 {
-                progress.stage(&format!(
-                    "step {n} of {n_steps}, t = {:.4e} s",
-                    self.motion.time(n)
-                ));
-            }
-            match self.motion.step(&self.state, &mut self.cache) {
-                Ok((next, report)) => {
-                    self.newton += report.newton_iterations as u64;
-                    self.laps.merge(&report.laps);
-                    self.accept(next, progress)?;
-                }
-                Err(error) => return Err(self.failed(solving(error))),
-            }
-            agree(self.reduce())?;
-            if n.is_multiple_of(self.placed[0].output.tables_every) {
-                agree(self.write_tables())?;
-            }
-            if n == n_steps || n.is_multiple_of(self.dynamic.output_every) {
-                let restart = match reason {
-                    Some(_) => RestartState::Stored,
-                    None => RestartState::at(n, self.dynamic, &self.placed[0].output),
-                };
-                agree(self.write_fields(restart))?;
-            }
-            progress.advance();
-        }
-        Ok(())
-    }
-
     /// Takes a state whose ledgers close.
     fn accept(&mut self, next: AssemblyState, progress: &Progress) -> Result<(), Failure> {
         let worst = &mut self.worst_defect;
         if let Err(failure) = check_ledgers((self.scene, self.dynamic), self.motion, &next, worst, self.dir) {
-            return Err(self.failed(failure));
+            return Err(instants::failed(self, LAST_GOOD, failure));
         }
         self.state = next;
         let step = self.state.step;
@@ -387,48 +367,51 @@ impl ListMarch<'_> {
         }
         Ok(())
     }
+}
 
-    /// Saves the state and says that the run can be resumed.
-    fn stopped(&mut self, reason: &str) -> Failure {
-        if let Err(error) = agree(self.write_fields(RestartState::Stored)) {
-            return error.context(format!("{reason}, but the state could not be saved"));
-        }
-        let n = self.state.step;
-        Failure::Stopped(anyhow!(
-            "{reason}; the state after step {n} of {}, t = {:.6e} s, is saved: go on with raceway resume {}",
-            self.dynamic.n_steps,
-            self.motion.time(n),
-            self.dir.display()
-        ))
-    }
-
-    /// Saves the last good state and says where the failed step was.
-    fn failed(&mut self, failure: Failure) -> Failure {
-        let failure = of_all(failure);
-        let n = self.state.step + 1;
-        let place = format!("step {n}, t = {:.6e} s", self.motion.time(n));
-        match self.write_fields(RestartState::Stored) {
-            Ok(()) => failure.context(format!(
-                "{place}; the last good state is in {}",
-                self.dir.display()
-            )),
-            Err(unsaved) => failure.context(format!(
-                "{place}; the last good state could not be saved: {}",
-                unsaved.text()
-            )),
+impl OverInstants for ListMarch<'_> {
+    fn due(&self) -> Due {
+        Due {
+            last: self.dynamic.n_steps,
+            tables_every: self.placed[0].output.tables_every,
+            files_every: self.dynamic.output_every,
         }
     }
 
-    /// Hands over the step of every bearing to be written as a file, unless it was; ranks recover the stress of all
-    /// first. To be called by all ranks or none.
-    fn write_fields(&mut self, restart: RestartState) -> Result<(), Failure> {
-        if self.last_file == Some(self.state.step) {
-            return Ok(());
-        }
-        if self.last_row != Some(self.state.step) {
-            // A step file vouches for the tables up to its step.
-            agree(self.write_tables())?;
-        }
+    fn written(&mut self) -> &mut WrittenSteps {
+        &mut self.written
+    }
+
+    fn dir(&self) -> &Path {
+        self.dir
+    }
+
+    fn now(&self) -> u64 {
+        self.state.step
+    }
+
+    fn time(&self, n: u64) -> f64 {
+        self.motion.time(n)
+    }
+
+    fn stage(&self, n: u64, first: u64) -> Option<String> {
+        let text = || format!("step {n} of {}, t = {:.4e} s", self.dynamic.n_steps, self.time(n));
+        (n == first || n % PROGRESS_STEPS == 1).then(text)
+    }
+
+    fn advance(&mut self, _n: u64, progress: &mut Progress) -> Result<(), Failure> {
+        let found = self.motion.step(&self.state, &mut self.cache);
+        let (next, report) = found.map_err(|error| instants::failed(self, LAST_GOOD, solving(error)))?;
+        self.newton += report.newton_iterations as u64;
+        self.laps.merge(&report.laps);
+        self.accept(next, progress)
+    }
+
+    fn restart_at(&self, n: u64) -> RestartState {
+        RestartState::at(n, self.dynamic, &self.placed[0].output)
+    }
+
+    fn append_files(&mut self, restart: RestartState) -> Result<(), Failure> {
         let of_shaft = several_state::arrays_of_shaft(&self.state, self.newton);
         let every = self.placed[0].output.every;
         let kept = every.kept(self.state.step, self.dynamic.output_every, self.dynamic.n_steps);
@@ -437,10 +420,6 @@ impl ListMarch<'_> {
             let (motion, state) = (&self.motion.bearings[i], &self.state.bearings[i]);
             let model = &self.assembly.bearings[i].model;
             gathered.push(files.gather_stress(&Shown::Motion { model, motion, state }, kept));
-        }
-        self.last_file = Some(self.state.step);
-        if restart == RestartState::Stored {
-            self.last_state = Some(self.state.step);
         }
         for (i, (files, gathered)) in self.files.iter_mut().zip(gathered).enumerate() {
             if !files.are_written_here() {
@@ -462,8 +441,7 @@ impl ListMarch<'_> {
         Ok(())
     }
 
-    /// Takes the state of every bearing into account in what is found of the whole run. Collective; rank 0 alone may
-    /// fail, and goes on with the other bearings.
+    /// Rank 0 goes on with the other bearings where it fails.
     fn reduce(&mut self) -> Result<(), Failure> {
         let mut reduced = Ok(());
         for (i, files) in self.files.iter_mut().enumerate() {
@@ -476,8 +454,7 @@ impl ListMarch<'_> {
         reduced
     }
 
-    /// Appends a line per table, of the shaft and of every bearing.
-    fn write_tables(&mut self) -> Result<(), Failure> {
+    fn append_rows(&mut self) -> Result<(), Failure> {
         let (step, time) = (self.state.step, self.motion.time(self.state.step));
         let now = ListState::of_motion(self.assembly, self.motion, &self.state);
         self.tables.append((step, time), None, self.assembly, &now)?;
@@ -485,7 +462,6 @@ impl ListMarch<'_> {
             let snapshot = Snapshot::of_motion(&self.motion.bearings[i], &self.state.bearings[i]);
             files.write_tables(step, time, None, &snapshot)?;
         }
-        self.last_row = Some(step);
         Ok(())
     }
 }

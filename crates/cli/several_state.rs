@@ -13,7 +13,7 @@ use results::reduction::take_arrays;
 use results::several::{BEARINGS_TABLE, SCENE_TEXT};
 use results::state_arrays::{self, Arrays};
 use results::watch::Watch;
-use scene::{Analysis, AnyScene, Dynamic, MeshFiles, Scene, SeveralScene, difference};
+use scene::{Analysis, AnyScene, BearingOnShaft, Dynamic, MeshFiles, Scene, SeveralScene, difference};
 
 use crate::shared::{acquire, of_root};
 
@@ -133,7 +133,7 @@ pub fn restore(
 
 /// What the command line says of the scene of a run that goes on.
 #[derive(Clone, Copy)]
-pub struct Changes<'a> {
+pub struct ListChanges<'a> {
     /// How long it goes and what it writes.
     pub overrides: &'a [String],
     /// The scene file, where it is not where it was.
@@ -143,7 +143,7 @@ pub struct Changes<'a> {
 }
 
 /// Reads the step from which a run goes on; `asked` is the one asked for. None if the run has finished. Collective.
-pub fn read(dir: &Path, asked: Option<u64>, changes: Changes<'_>) -> Result<Option<StoredList>, Failure> {
+pub fn read(dir: &Path, asked: Option<u64>, changes: ListChanges<'_>) -> Result<Option<StoredList>, Failure> {
     let Locked { text, folders, locks } = agree(lock(dir))?;
     // All ranks read before the first one writes.
     let step = of_root(|| choose(dir, &folders, asked))?;
@@ -188,7 +188,7 @@ fn lock(dir: &Path) -> Result<Locked, Failure> {
 fn read_step(
     dir: &Path,
     (text, folders, step): (&str, &[PathBuf], u64),
-    changes: Changes<'_>,
+    changes: ListChanges<'_>,
 ) -> Result<Option<StoredList>, Failure> {
     let overrides = changes.overrides;
     let first = folders[0].join(step_file_name(step));
@@ -202,7 +202,31 @@ fn read_step(
         .get(OVERRIDES)
         .map_or(Vec::new(), |text| text.lines().map(str::to_string).collect());
     let scene = scene_of(text, &path, &before, changes)?;
-    let Analysis::Dynamic(dynamic) = scene.analysis else {
+    let Some(dynamic) = dynamic_after(&scene, dir, step)? else {
+        return Ok(None);
+    };
+    let mut bearings = Vec::new();
+    for (i, folder) in folders.iter().enumerate() {
+        let now = &scene.bearings[i];
+        bearings.push(stored_bearing(folder, step, now, (&path, &before, overrides))?);
+    }
+    print::note(format_args!(
+        "resuming {} after step {step} of {}",
+        dir.display(),
+        dynamic.n_steps
+    ));
+    Ok(Some(StoredList {
+        dir: dir.to_path_buf(),
+        scene,
+        dynamic,
+        step,
+        bearings,
+    }))
+}
+
+/// The motion that goes on after a step; None if nothing is left to do.
+fn dynamic_after(scene: &SeveralScene, dir: &Path, step: u64) -> Result<Option<Dynamic>, Failure> {
+    let Analysis::Dynamic(dynamic) = &scene.analysis else {
         return Err(anyhow!(
             "{} holds results at rest; only a motion, a scene with [dynamic], can be resumed, run the scene again",
             dir.display()
@@ -226,42 +250,37 @@ fn read_step(
         ));
         return Ok(None);
     }
-    let mut bearings = Vec::new();
-    for (i, folder) in folders.iter().enumerate() {
-        let record = read_any_step(folder, step)?;
-        let own = Scene::parse(&record.scene, &path, overrides, MeshFiles::MustExist)?;
-        let now = &scene.bearings[i].scene;
-        let changes = difference(&own.text, &now.text)?;
-        if let Some(change) = changes.iter().find(|change| !change.is_below(&["shaft"])) {
-            return Err(anyhow!(
-                "bearing {:?} has changed since the run: {change}; put its type back as it was",
-                scene.bearings[i].name
-            )
-            .into());
-        }
-        require_same_meshes(&own, &read_about(&folder.join(step_file_name(step)))?)?;
-        bearings.push(StoredBearing {
-            folder: folder.clone(),
-            lock: None,
-            scene: Scene {
-                overrides: [&before, overrides].concat(),
-                ..own
-            },
-            record,
-        });
+    Ok(Some(*dynamic))
+}
+
+/// The step of a bearing, whose scene and meshes must be those that the list has `now`; scenes are read at `path`, with
+/// what the run and this command have changed.
+fn stored_bearing(
+    folder: &Path,
+    step: u64,
+    now: &BearingOnShaft,
+    (path, before, overrides): (&Path, &[String], &[String]),
+) -> Result<StoredBearing, Failure> {
+    let record = read_any_step(folder, step)?;
+    let own = Scene::parse(&record.scene, path, overrides, MeshFiles::MustExist)?;
+    let changes = difference(&own.text, &now.scene.text)?;
+    if let Some(change) = changes.iter().find(|change| !change.is_below(&["shaft"])) {
+        return Err(anyhow!(
+            "bearing {:?} has changed since the run: {change}; put its type back as it was",
+            now.name
+        )
+        .into());
     }
-    print::note(format_args!(
-        "resuming {} after step {step} of {}",
-        dir.display(),
-        dynamic.n_steps
-    ));
-    Ok(Some(StoredList {
-        dir: dir.to_path_buf(),
-        scene,
-        dynamic,
-        step,
-        bearings,
-    }))
+    require_same_meshes(&own, &read_about(&folder.join(step_file_name(step)))?)?;
+    Ok(StoredBearing {
+        folder: folder.to_path_buf(),
+        lock: None,
+        scene: Scene {
+            overrides: [before, overrides].concat(),
+            ..own
+        },
+        record,
+    })
 }
 
 /// The scene of the run with what may change changed.
@@ -269,7 +288,7 @@ fn scene_of(
     text: &str,
     path: &Path,
     before: &[String],
-    changes: Changes<'_>,
+    changes: ListChanges<'_>,
 ) -> Result<SeveralScene, Failure> {
     let overrides = changes.overrides;
     let of_list = |text: &str, overrides: &[String]| match AnyScene::parse(

@@ -7,17 +7,12 @@ use checkpoint::FolderLock;
 use comm::{Communicator, print};
 use results::failure::{Failure, agree};
 use results::files::note_dead_owner;
-use scene::{Backend, Scene};
+use scene::Scene;
 
 /// Says what ranks do not share.
 pub fn note_unshared(scene: &Scene) {
     let ranks = Communicator::world().size();
-    let unshared = match scene.solver.backend {
-        Backend::Sector | Backend::Cyclic => return,
-        Backend::Auto => "rings that are not rotationally periodic",
-        Backend::Sparse => "the whole run",
-    };
-    if ranks > 1 {
+    if let (Some(unshared), true) = (scene.solver.backend.unshared(), ranks > 1) {
         print::note(format_args!(
             "note: each of the {ranks} ranks computes {unshared}; with solver.backend = \"sector\" they share any ring"
         ));
@@ -49,4 +44,13 @@ pub fn acquire(dir: &Path) -> Result<Option<FolderLock>, Failure> {
     let lock = FolderLock::acquire(dir)?;
     note_dead_owner(&lock);
     Ok(Some(lock))
+}
+
+/// Prints which effects a scene has.
+pub fn print_effects(names: &[&str]) {
+    let names = match names {
+        [] => "none".to_string(),
+        names => names.join(", "),
+    };
+    print::line(format_args!("effects  {names}"));
 }

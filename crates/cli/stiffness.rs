@@ -25,7 +25,7 @@ use scene::{Analysis, AnyScene, Scene, build_model, doubts, model_with_rings, ro
 
 use crate::linear_figures::draw;
 use crate::progress::Progress;
-use crate::run::{Point, points, stage_text};
+use crate::run::{SweptScene, points, stage_text};
 use crate::{several, several_stiffness};
 
 /// Most positions of a ripple: far more than one can be resolved with.
@@ -201,7 +201,7 @@ fn damping_note(scene: &Scene, model: &Model) -> String {
 
 /// A point of a scene and what is asked of it.
 struct PointOfScene<'a> {
-    point: &'a Point,
+    point: &'a SweptScene,
     time: f64,
     ripple: Option<usize>,
 }

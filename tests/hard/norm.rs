@@ -6,7 +6,7 @@
 
 use contact::Side;
 use dynamics::Model;
-use dynamics::effects::{self, Now};
+use dynamics::effects::Now;
 use dynamics::interactions::raceway_contact::Site;
 use dynamics::motion::{Integrator, Motion, MotionSettings, MotionState};
 
@@ -77,14 +77,11 @@ fn memory(model: &Model, motion: &Motion<'_>, scheme: Integrator, dt: f64, state
 /// Forces on balls [radial, axial] and on the shaft at the instant of a state, N.
 fn forces(model: &Model, motion: &Motion<'_>, state: &MotionState) -> (Vec<[f64; 2]>, [f64; 5]) {
     let time = motion.time(state.step);
-    let loads = effects::loads(
-        model,
-        &Now {
-            time,
-            ..Now::default()
-        },
-    )
-    .unwrap();
+    let now = Now {
+        time,
+        ..Now::default()
+    };
+    let loads = model.loads(&now).unwrap();
     let (mut balls, mut shaft) = (loads.balls.clone(), loads.shaft);
     for index in 0..state.approaches.len() {
         let (ball, side) = (index / 2, Side::BOTH[index % 2]);

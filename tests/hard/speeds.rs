@@ -115,7 +115,7 @@ fn gyroscopic_alone(record: &mut Record) {
             angles: Some(&angles),
             ..Default::default()
         };
-        let loads = dynamics::effects::loads(&model, &now).unwrap();
+        let loads = model.loads(&now).unwrap();
         let mut worst = 0.0f64;
         for (b, ball) in rest.balls.iter().enumerate() {
             let push = |side: usize, c: &dynamics::balls::ContactResult| {

@@ -21,6 +21,19 @@ pub struct FrameForms {
 }
 
 impl FrameForms {
+    /// Makes the forms of `n` oscillators skew and symmetric, as they are but for round-off: the terms with the speed
+    /// do no work then.
+    pub(crate) fn remove_round_off(&mut self, n: usize) {
+        for i in 0..n {
+            for j in 0..=i {
+                let [a, b] = [self.across[n * i + j], self.across[n * j + i]];
+                (self.across[n * i + j], self.across[n * j + i]) = (0.5 * (a - b), 0.5 * (b - a));
+                let mean = 0.5 * (self.radial[n * i + j] + self.radial[n * j + i]);
+                (self.radial[n * i + j], self.radial[n * j + i]) = (mean, mean);
+            }
+        }
+    }
+
     /// Loads on the oscillators at a speed, rad/s, and its rate, where they stand at `x` and move with `v`.
     pub fn load(&self, [speed, rate]: [f64; 2], x: &[f64], v: &[f64]) -> Vec<f64> {
         let pairs = x.iter().zip(v);

@@ -29,11 +29,11 @@ pub struct MatrixFiles {
     pub stiffness: PathBuf,
     /// Mass, of a body that moves, and its unit, kg.
     pub mass: Option<(PathBuf, f64)>,
-    /// Nodes.
+    /// NumberedNodes.
     pub nodes: PathBuf,
-    /// Nodes of the seat.
+    /// NumberedNodes of the seat.
     pub seat_nodes: PathBuf,
-    /// Nodes that are held.
+    /// NumberedNodes that are held.
     pub fixed_nodes: Option<PathBuf>,
     /// Unit of lengths, m.
     pub length_unit: f64,
@@ -48,7 +48,7 @@ pub struct MatrixBody {
     pub stiffness: CsMat<f64>,
     /// Mass, kg, all entries.
     pub mass: Option<CsMat<f64>>,
-    /// Nodes, m.
+    /// NumberedNodes, m.
     pub places: Vec<[f64; 3]>,
     /// Their numbers.
     pub tags: Vec<u64>,
@@ -60,26 +60,7 @@ pub struct MatrixBody {
 impl MatrixBody {
     /// Reads and checks all files.
     pub fn read(files: &MatrixFiles) -> Result<MatrixBody, SurroundingError> {
-        let (mut places, mut tags, mut number) = (Vec::new(), Vec::new(), BTreeMap::new());
-        for (line, row) in table(&files.nodes, 4..=4, "node,x,y,z")? {
-            let tag = node_number(&files.nodes, line, row[0])?;
-            if number.insert(tag, places.len()).is_some() {
-                return Err(wrong(
-                    &files.nodes,
-                    line,
-                    format!("node {tag} stands here twice; expected each once"),
-                ));
-            }
-            tags.push(tag);
-            places.push([row[1], row[2], row[3]].map(|x| files.length_unit * x));
-        }
-        if places.is_empty() {
-            return Err(wrong(
-                &files.nodes,
-                0,
-                "no node; expected lines node,x,y,z".to_string(),
-            ));
-        }
+        let (places, tags, number) = read_nodes(files)?;
         let find = |path: &Path, line: usize, value: f64| {
             let tag = node_number(path, line, value)?;
             number.get(&tag).copied().ok_or_else(|| {
@@ -137,7 +118,7 @@ impl MatrixBody {
         }
     }
 
-    /// Nodes of the seat with their areas, m^2, ascending.
+    /// NumberedNodes of the seat with their areas, m^2, ascending.
     pub(crate) fn seat_areas(&self, name: &str) -> Result<Vec<(usize, f64)>, SurroundingError> {
         let what = format!("the seat of body \"{name}\"");
         let places: Vec<[f64; 3]> = self.seat.iter().map(|&(node, _)| self.places[node]).collect();
@@ -227,6 +208,34 @@ fn node_number(path: &Path, line: usize, value: f64) -> Result<u64, SurroundingE
     ))
 }
 
+/// Places, m, and numbers of the nodes in their order, and the place in that order of each number.
+type NumberedNodes = (Vec<[f64; 3]>, Vec<u64>, BTreeMap<u64, usize>);
+
+/// Reads the nodes of a body; at least one.
+fn read_nodes(files: &MatrixFiles) -> Result<NumberedNodes, SurroundingError> {
+    let (mut places, mut tags, mut number) = (Vec::new(), Vec::new(), BTreeMap::new());
+    for (line, row) in table(&files.nodes, 4..=4, "node,x,y,z")? {
+        let tag = node_number(&files.nodes, line, row[0])?;
+        if number.insert(tag, places.len()).is_some() {
+            return Err(wrong(
+                &files.nodes,
+                line,
+                format!("node {tag} stands here twice; expected each once"),
+            ));
+        }
+        tags.push(tag);
+        places.push([row[1], row[2], row[3]].map(|x| files.length_unit * x));
+    }
+    if places.is_empty() {
+        return Err(wrong(
+            &files.nodes,
+            0,
+            "no node; expected lines node,x,y,z".to_string(),
+        ));
+    }
+    Ok((places, tags, number))
+}
+
 /// A matrix in SI units with both halves, of the nodes `tags` of the file `nodes`.
 fn read_matrix(
     (path, unit): (&Path, f64),
@@ -236,52 +245,12 @@ fn read_matrix(
     let text = text_of(path)?;
     let mut lines = (1..).zip(text.lines());
     let head = lines.next().map_or("", |(_, line)| line).to_ascii_lowercase();
-    let is_symmetric = match head.split_whitespace().collect::<Vec<_>>().as_slice() {
-        [
-            "%%matrixmarket",
-            "matrix",
-            "coordinate",
-            "real" | "integer",
-            "symmetric",
-        ] => true,
-        [
-            "%%matrixmarket",
-            "matrix",
-            "coordinate",
-            "real" | "integer",
-            "general",
-        ] => false,
-        _ => {
-            let expected = "expected first \"%%MatrixMarket matrix coordinate real symmetric\", or general";
-            return Err(wrong(
-                path,
-                1,
-                format!("no Matrix Market file of this kind; {expected}"),
-            ));
-        }
-    };
+    let is_symmetric = is_symmetric(path, &head)?;
     let mut rows = lines.filter(|(_, line)| !line.trim().is_empty() && !line.starts_with('%'));
     let numbers = |line: &str| line.split_whitespace().map(finite).collect::<Option<Vec<f64>>>();
     let (line, size) = rows.next().unwrap_or((1, ""));
     let n = 3 * tags.len();
-    let entries = match numbers(size).as_deref() {
-        Some([r, c, entries]) if *r == n as f64 && *c == n as f64 => *entries,
-        Some([r, c, _]) => {
-            let problem = format!(
-                "the matrix is {r} x {c}, but {} has {} nodes; expected {n} x {n}, rows ux uy uz of every node",
-                nodes.display(),
-                tags.len()
-            );
-            return Err(wrong(path, line, problem));
-        }
-        _ => {
-            return Err(wrong(
-                path,
-                line,
-                "no sizes; expected rows, columns and entries".to_string(),
-            ));
-        }
-    };
+    let entries = n_entries((path, line), size, (nodes, tags))?;
     let mut triplets = TriMat::new((n, n));
     let mut count = 0.0;
     for (line, row) in rows {
@@ -312,6 +281,60 @@ fn read_matrix(
     let matrix: CsMat<f64> = triplets.to_csr();
     require_sound((path, what), &matrix, tags)?;
     Ok(matrix)
+}
+
+/// Whether a Matrix Market file holds one half of its matrix, by its first line in lower case.
+fn is_symmetric(path: &Path, head: &str) -> Result<bool, SurroundingError> {
+    match head.split_whitespace().collect::<Vec<_>>().as_slice() {
+        [
+            "%%matrixmarket",
+            "matrix",
+            "coordinate",
+            "real" | "integer",
+            "symmetric",
+        ] => Ok(true),
+        [
+            "%%matrixmarket",
+            "matrix",
+            "coordinate",
+            "real" | "integer",
+            "general",
+        ] => Ok(false),
+        _ => {
+            let expected = "expected first \"%%MatrixMarket matrix coordinate real symmetric\", or general";
+            Err(wrong(
+                path,
+                1,
+                format!("no Matrix Market file of this kind; {expected}"),
+            ))
+        }
+    }
+}
+
+/// Number of entries by the line of the sizes, which must be those of three dofs of every node.
+fn n_entries(
+    (path, line): (&Path, usize),
+    size: &str,
+    (nodes, tags): (&Path, &[u64]),
+) -> Result<f64, SurroundingError> {
+    let n = 3 * tags.len();
+    let numbers = size.split_whitespace().map(finite).collect::<Option<Vec<f64>>>();
+    match numbers.as_deref() {
+        Some([r, c, entries]) if *r == n as f64 && *c == n as f64 => Ok(*entries),
+        Some([r, c, _]) => {
+            let problem = format!(
+                "the matrix is {r} x {c}, but {} has {} nodes; expected {n} x {n}, rows ux uy uz of every node",
+                nodes.display(),
+                tags.len()
+            );
+            Err(wrong(path, line, problem))
+        }
+        _ => Err(wrong(
+            path,
+            line,
+            "no sizes; expected rows, columns and entries".to_string(),
+        )),
+    }
 }
 
 /// Positive diagonal, and symmetric.

@@ -25,31 +25,11 @@ impl Surrounding {
             body: self.name.clone(),
             source,
         })?;
-        let (n, rows, n_dofs) = (modes.n(), self.free.len(), self.n_dofs);
-        let (m, n_fixed) = (columns.len() / rows, modes.n_fixed);
-        let fields = |block: &[usize]| -> Vec<f64> {
-            let [lam, shares] = [(&modes.forces, m), (&modes.shares, n_fixed)].map(|(of, width)| {
-                let all = block.iter().flat_map(|&i| &of[width * i..width * (i + 1)]);
-                all.copied().collect::<Vec<f64>>()
-            });
-            let mut free = linear_combinations(rows, columns, m, &lam, block.len());
-            let own = linear_combinations(rows, &modes.fixed, n_fixed, &shares, block.len());
-            free.iter_mut().zip(own).for_each(|(u, w)| *u += w);
-            let mut all = vec![0.0; n_dofs * block.len()];
-            for ((&i, field), free) in block
-                .iter()
-                .zip(all.chunks_exact_mut(n_dofs))
-                .zip(free.chunks_exact(rows))
-            {
-                self.free.iter().zip(free).for_each(|(&dof, u)| field[dof] = *u);
-                self.add_shaft_motion(modes.shaft_row(i), field);
-            }
-            all
-        };
+        let (n, n_dofs) = (modes.n(), self.n_dofs);
         let numbers: Vec<usize> = (0..n).collect();
         let fields: Vec<f64> = numbers
             .par_chunks(AT_A_TIME)
-            .map(fields)
+            .map(|block| self.fields_of_oscillators(block, modes, columns))
             .collect::<Vec<_>>()
             .concat();
         let form = |turn: fn([f64; 3]) -> [f64; 3]| -> Vec<f64> {
@@ -73,15 +53,29 @@ impl Surrounding {
             across: form(|[x, y, _]| [-y, x, 0.0]),
             radial: form(|[x, y, _]| [x, y, 0.0]),
         };
-        // Skew and symmetric but for round-off: the terms with the speed do no work then.
-        for i in 0..n {
-            for j in 0..=i {
-                let [a, b] = [forms.across[n * i + j], forms.across[n * j + i]];
-                (forms.across[n * i + j], forms.across[n * j + i]) = (0.5 * (a - b), 0.5 * (b - a));
-                let mean = 0.5 * (forms.radial[n * i + j] + forms.radial[n * j + i]);
-                (forms.radial[n * i + j], forms.radial[n * j + i]) = (mean, mean);
-            }
-        }
+        forms.remove_round_off(n);
         Ok(forms)
+    }
+    /// Displacements of all dofs of a block of oscillators, `[block][n_dofs]` flat.
+    fn fields_of_oscillators(&self, block: &[usize], modes: &BodyModes, columns: &[f64]) -> Vec<f64> {
+        let (rows, n_dofs) = (self.free.len(), self.n_dofs);
+        let (m, n_fixed) = (columns.len() / rows, modes.n_fixed);
+        let [lam, shares] = [(&modes.forces, m), (&modes.shares, n_fixed)].map(|(of, width)| {
+            let all = block.iter().flat_map(|&i| &of[width * i..width * (i + 1)]);
+            all.copied().collect::<Vec<f64>>()
+        });
+        let mut free = linear_combinations(rows, columns, m, &lam, block.len());
+        let own = linear_combinations(rows, &modes.fixed, n_fixed, &shares, block.len());
+        free.iter_mut().zip(own).for_each(|(u, w)| *u += w);
+        let mut all = vec![0.0; n_dofs * block.len()];
+        for ((&i, field), free) in block
+            .iter()
+            .zip(all.chunks_exact_mut(n_dofs))
+            .zip(free.chunks_exact(rows))
+        {
+            self.free.iter().zip(free).for_each(|(&dof, u)| field[dof] = *u);
+            self.add_shaft_motion(modes.shaft_row(i), field);
+        }
+        all
     }
 }

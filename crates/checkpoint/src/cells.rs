@@ -1,6 +1,6 @@
 //! Fields over the cells of all bodies.
 
-use crate::record::{Field, listed, mask, stress_field};
+use crate::field::{Field, listed, mask, stress_field};
 use crate::storage::Storage;
 
 /// Components of a stress tensor, in the order xx yy zz xy yz xz.

@@ -11,7 +11,7 @@ use hdf5::{Dataset, File, Group, Location};
 
 use crate::checksum::{CHECKSUM_ATTRIBUTE, Element, below, checksum, write_checksum};
 use crate::error::CheckpointError;
-use crate::record::{Field, IN_REGION, VECTOR};
+use crate::field::{Field, IN_REGION, VECTOR};
 use crate::region;
 use crate::regular::open_regular;
 use crate::storage::{Coding, Compression, ErrorBound, Precision};

@@ -6,19 +6,13 @@ use std::path::{Path, PathBuf};
 use crate::atomic;
 use crate::dataset::CheckedFile;
 use crate::error::CheckpointError;
-use crate::index::INDEX_FILE;
 use crate::lock::FolderLock;
 use crate::mesh_file::MESH_FILE;
-use crate::pack::pack_range;
+use crate::names::{INDEX_FILE, SERIES_FILE, pack_range, step_file_name, step_number};
 use crate::record::StepRecord;
 use crate::seal::verify_structure;
-use crate::series::{SERIES_FILE, write_series};
+use crate::series::write_series;
 use crate::step::{has_state, read_step, read_step_number, read_step_time, require_run_in, run_of_file};
-
-/// File name of a step: `step_000042.hdf`; more than six digits when needed.
-pub fn step_file_name(step: u64) -> String {
-    format!("step_{step:06}.hdf")
-}
 
 /// Numbers of the committed steps in a folder, growing. Only names are looked at.
 pub fn committed_steps(dir: &Path) -> Result<Vec<u64>, CheckpointError> {
@@ -152,12 +146,6 @@ pub(crate) fn note_start(dir: &Path) -> Result<(), CheckpointError> {
 /// Says that a run has its first step.
 pub(crate) fn note_first_step(dir: &Path) -> Result<(), CheckpointError> {
     remove_if_present(&dir.join(STARTING))
-}
-
-/// The number in a step's file name; names this crate would not write are not steps.
-fn step_number(name: &str) -> Option<u64> {
-    let step = name.strip_prefix("step_")?.strip_suffix(".hdf")?.parse().ok()?;
-    (step_file_name(step) == name).then_some(step)
 }
 
 pub(crate) fn file_names(dir: &Path) -> Result<Vec<String>, CheckpointError> {

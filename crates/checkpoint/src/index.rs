@@ -16,35 +16,33 @@ use crate::checksum::Element;
 use crate::dataset::{CheckedFile, create_group, create_vtkhdf, link_mesh};
 use crate::error::CheckpointError;
 use crate::mesh_file::{MESH_FILE, MESH_HASH};
-use crate::pack::{Place, sound_places};
+use crate::names::INDEX_FILE;
+use crate::places::{StepPlace, sound_places};
 use crate::series::write_series;
 use crate::step::{CELL_DATA, POINT_DATA, read_mesh_hash, step_cell_fields};
 use crate::storage::Precision;
 
-/// Name of the file in the result folder.
-pub const INDEX_FILE: &str = "run.vtkhdf";
-
 /// What a row of a field is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-enum Row {
+enum RowKind {
     Point,
     Cell,
 }
 
-impl Row {
+impl RowKind {
     /// Group of such fields.
     fn group(self) -> &'static str {
         match self {
-            Row::Point => POINT_DATA,
-            Row::Cell => CELL_DATA,
+            RowKind::Point => POINT_DATA,
+            RowKind::Cell => CELL_DATA,
         }
     }
 
     /// Group of their offsets in `Steps`.
     fn offsets(self) -> &'static str {
         match self {
-            Row::Point => "PointDataOffsets",
-            Row::Cell => "CellDataOffsets",
+            RowKind::Point => "PointDataOffsets",
+            RowKind::Cell => "CellDataOffsets",
         }
     }
 }
@@ -78,7 +76,7 @@ pub fn rebuild_index(dir: &Path) -> Result<Views, CheckpointError> {
         let path = dir.to_path_buf();
         return Err(damaged.pop().unwrap_or(CheckpointError::NoSteps { path }));
     }
-    let places: Vec<&Place> = steps.iter().map(|(_, place)| place).collect();
+    let places: Vec<&StepPlace> = steps.iter().map(|(_, place)| place).collect();
     let n_rows = require_one_mesh(dir, &places)?;
     let fields = collect_fields(&places, n_rows)?;
     let single = steps.iter().filter(|(_, place)| !place.is_packed());
@@ -105,7 +103,7 @@ pub fn rebuild_index(dir: &Path) -> Result<Views, CheckpointError> {
 }
 
 /// Points and cells of the mesh; fails when a step belongs to another mesh.
-fn require_one_mesh(dir: &Path, places: &[&Place]) -> Result<[(Row, usize); 2], CheckpointError> {
+fn require_one_mesh(dir: &Path, places: &[&StepPlace]) -> Result<[(RowKind, usize); 2], CheckpointError> {
     let mesh_path = dir.join(MESH_FILE);
     let mesh = CheckedFile::open(&mesh_path)?;
     let expected = mesh.text(MESH_HASH)?;
@@ -120,23 +118,26 @@ fn require_one_mesh(dir: &Path, places: &[&Place]) -> Result<[(Row, usize); 2], 
         }
     }
     Ok([
-        (Row::Point, mesh.shape("/VTKHDF/Points")?[0]),
-        (Row::Cell, mesh.shape("/VTKHDF/Types")?[0]),
+        (RowKind::Point, mesh.shape("/VTKHDF/Points")?[0]),
+        (RowKind::Cell, mesh.shape("/VTKHDF/Types")?[0]),
     ])
 }
 
 /// Fields by their rows and names.
-type IndexedFields = BTreeMap<(Row, String), IndexedField>;
+type IndexedFields = BTreeMap<(RowKind, String), IndexedField>;
 
 /// Which fields exist, where, and how wide.
-fn collect_fields(places: &[&Place], rows: [(Row, usize); 2]) -> Result<IndexedFields, CheckpointError> {
+fn collect_fields(
+    places: &[&StepPlace],
+    rows: [(RowKind, usize); 2],
+) -> Result<IndexedFields, CheckpointError> {
     let mut fields = IndexedFields::new();
     for (k, place) in places.iter().enumerate() {
         let file = place.open()?;
         for (row, n_rows) in rows {
             let names = match row {
-                Row::Point => file.members(POINT_DATA)?,
-                Row::Cell => step_cell_fields(&file)?,
+                RowKind::Point => file.members(POINT_DATA)?,
+                RowKind::Cell => step_cell_fields(&file)?,
             };
             for name in names {
                 let dataset = format!("{}/{name}", row.group());
@@ -170,7 +171,7 @@ fn map_field<T: Element + Into<hdf5::types::OwnedDynValue>>(
     file: &File,
     path: &str,
     field: &IndexedField,
-    places: &[&Place],
+    places: &[&StepPlace],
     fill: T,
 ) -> hdf5::Result<()> {
     let (n, n_rows) = (field.n_rows, places.len() * field.n_rows);

@@ -44,8 +44,11 @@ mod atomic;
 mod checksum;
 mod dataset;
 mod describe;
+mod field;
 mod folder;
 mod mesh_file;
+mod names;
+mod places;
 mod region;
 mod regular;
 mod seal;
@@ -58,15 +61,17 @@ pub use describe::{ArrayDescription, FileDescription, describe};
 pub use error::CheckpointError;
 pub use folder::{
     clear_unfinished_start, committed_steps, is_unfinished_start, new_superseded_folder, newest_step,
-    require_run, run_of, step_file_name,
+    require_run, run_of,
 };
 pub use grid::Grid;
 pub use growing::{FileStamp, GrowingFile, Stamps, start_of};
 pub use index::{Views, rebuild_index};
 pub use lock::{FolderLock, open_lock};
 pub use mesh_file::{MeshFile, read_mesh};
+pub use names::step_file_name;
 pub use output::{Output, Resumed};
-pub use pack::{all_steps, pack_steps, packs, point_field_names, read_any_step, unpack_steps};
+pub use pack::{pack_steps, unpack_steps};
+pub use places::{all_steps, packs, point_field_names, read_any_step};
 pub use point_table::{PointTable, TableField, read_table};
 pub use record::{PointFields, StateArray, StepRecord};
 pub use regular::{open_own, open_regular};

@@ -12,15 +12,16 @@ use crate::body::Body;
 use crate::error::CheckpointError;
 use crate::folder::{
     committed_steps, move_aside, note_first_step, note_start, remove_if_present, remove_leftovers,
-    require_no_results, sound_steps, step_file_name,
+    require_no_results, sound_steps,
 };
-use crate::index::{INDEX_FILE, Views, rebuild_index};
+use crate::index::{Views, rebuild_index};
 use crate::lock::FolderLock;
 use crate::mesh_file::{MESH_FILE, MeshFile, read_mesh, require_same_mesh};
+use crate::names::{INDEX_FILE, step_file_name};
 use crate::point_table::{PointTable, write_table};
 use crate::record::{StepRecord, require_texts};
 use crate::series::write_series;
-use crate::step::{Origin, read_about, write_step_file};
+use crate::step::{StepOrigin, read_about, write_step_file};
 use crate::storage::Storage;
 
 /// A result folder open for writing; it is locked against other processes.
@@ -201,8 +202,8 @@ impl Output {
     }
 
     /// What the files of the run say about it.
-    fn origin(&self) -> Origin<'_> {
-        Origin {
+    fn origin(&self) -> StepOrigin<'_> {
+        StepOrigin {
             program_version: env!("CARGO_PKG_VERSION"),
             mesh_hash: &self.mesh_hash,
             run: self.run.as_deref(),

@@ -12,71 +12,23 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use crate::atomic::{self, Format};
-use crate::dataset::{CheckedFile, create_group, create_vtkhdf};
+use crate::dataset::{create_group, create_vtkhdf};
 use crate::error::CheckpointError;
-use crate::folder::{committed_steps, file_names, remove_if_present, require_run, run_of, step_file_name};
+use crate::folder::{committed_steps, remove_if_present, require_run, run_of};
 use crate::index::rebuild_index;
 use crate::lock::FolderLock;
+use crate::names::{group_name, pack_name, step_file_name};
+use crate::places::{StepPlace, packs};
 use crate::record::StepRecord;
-use crate::seal::{verify_seal, verify_structure};
+use crate::seal::verify_seal;
 use crate::step::{
-    Origin, POINT_DATA, fill_step, has_state, read_mesh_hash, read_record, read_step, read_storage,
-    read_texts, read_time, read_version, require_run_in, run_of_file, write_step_file,
+    StepOrigin, fill_step, has_state, read_mesh_hash, read_record, read_step, read_storage, read_texts,
+    read_version, run_of_file, write_step_file,
 };
 use crate::storage::Storage;
 
-/// Where a step is.
-#[derive(Clone, Debug)]
-pub(crate) struct Place {
-    /// Its number.
-    pub step: u64,
-    /// The file.
-    pub path: PathBuf,
-    /// The group in the file at which its paths start.
-    root: String,
-}
-
-impl Place {
-    fn single(dir: &Path, step: u64) -> Place {
-        Place {
-            step,
-            path: dir.join(step_file_name(step)),
-            root: "/".to_string(),
-        }
-    }
-
-    fn packed(path: &Path, step: u64) -> Place {
-        Place {
-            step,
-            path: path.to_path_buf(),
-            root: format!("/{}", group_name(step)),
-        }
-    }
-
-    /// Opens the step.
-    pub fn open(&self) -> Result<CheckedFile<'_>, CheckpointError> {
-        CheckedFile::open_at(&self.path, &self.root)
-    }
-
-    /// Whether the step shares its file with others.
-    pub fn is_packed(&self) -> bool {
-        self.root != "/"
-    }
-
-    /// Name of the file in its folder.
-    pub fn file_name(&self) -> String {
-        let name = self.path.file_name().expect("a place is a file");
-        name.to_string_lossy().into_owned()
-    }
-
-    /// An array of the step, as a path from the root of the file.
-    pub fn below(&self, array: &str) -> String {
-        format!("{}{array}", self.root.trim_end_matches('/'))
-    }
-}
-
 /// A step with all that its file says.
-struct Whole {
+struct WholeStep {
     record: StepRecord,
     program_version: String,
     mesh_hash: String,
@@ -85,11 +37,11 @@ struct Whole {
     storage: Storage,
 }
 
-impl Whole {
+impl WholeStep {
     /// Reads a step of a file whose structure has been verified.
-    fn read(place: &Place) -> Result<Whole, CheckpointError> {
+    fn read(place: &StepPlace) -> Result<WholeStep, CheckpointError> {
         let file = place.open()?;
-        Ok(Whole {
+        Ok(WholeStep {
             record: read_record(&file, &place.path)?,
             program_version: read_version(&file)?,
             mesh_hash: read_mesh_hash(&file)?,
@@ -99,68 +51,14 @@ impl Whole {
         })
     }
 
-    fn origin(&self) -> Origin<'_> {
-        Origin {
+    fn origin(&self) -> StepOrigin<'_> {
+        StepOrigin {
             program_version: &self.program_version,
             mesh_hash: &self.mesh_hash,
             run: self.run.as_deref(),
             about: &self.about,
         }
     }
-}
-
-/// Packs of a folder with the steps in each, growing. Only names are looked at, and the groups of the packs.
-pub fn packs(dir: &Path) -> Result<Vec<(PathBuf, Vec<u64>)>, CheckpointError> {
-    let mut ranges: Vec<_> = file_names(dir)?
-        .iter()
-        .filter_map(|name| pack_range(name))
-        .collect();
-    ranges.sort_unstable();
-    let steps = |(first, last)| {
-        let path = dir.join(pack_name(first, last));
-        verify_structure(&path)?;
-        let groups = CheckedFile::open(&path)?.members("/")?;
-        let steps = groups
-            .iter()
-            .filter_map(|name| name.strip_prefix("step_")?.parse().ok());
-        let mut steps: Vec<u64> = steps.collect();
-        steps.sort_unstable();
-        Ok((path, steps))
-    };
-    ranges.into_iter().map(steps).collect()
-}
-
-/// Time, s, and place of steps, and why others are not among them.
-type SoundPlaces = (Vec<(f64, Place)>, Vec<CheckpointError>);
-
-/// Time and place of every step of the folder's run with a sound structure, growing, and why others are not.
-pub(crate) fn sound_places(dir: &Path) -> Result<SoundPlaces, CheckpointError> {
-    let (mut places, mut damaged) = (BTreeMap::new(), Vec::new());
-    for (path, steps) in packs(dir)? {
-        places.extend(steps.into_iter().map(|step| (step, Place::packed(&path, step))));
-    }
-    // A file of its own counts before a pack.
-    for step in committed_steps(dir)? {
-        places.insert(step, Place::single(dir, step));
-    }
-    let (mut sound, run) = (Vec::new(), run_of(dir)?);
-    let time_of = |place: &Place| {
-        let file = place.open()?;
-        require_run_in(&file, &place.path, run.as_deref())?;
-        read_time(&file)
-    };
-    for place in places.into_values() {
-        let structure = if place.is_packed() {
-            Ok(())
-        } else {
-            verify_structure(&place.path)
-        };
-        match structure.and_then(|()| time_of(&place)) {
-            Ok(time) => sound.push((time, place)),
-            Err(error) => damaged.push(error),
-        }
-    }
-    Ok((sound, damaged))
 }
 
 /// Puts all committed steps but the newest `keep` (at least one) into packs of `per_file` steps; the newest step with a
@@ -186,7 +84,7 @@ pub fn pack_steps(lock: &FolderLock, keep: usize, per_file: usize) -> Result<usi
     }
     // All is read back before the first file goes.
     for step in &steps {
-        read_record(&Place::packed(&packed[step], *step).open()?, &packed[step])?;
+        read_record(&StepPlace::packed(&packed[step], *step).open()?, &packed[step])?;
     }
     for &step in &steps {
         let hidden = dir.join(format!(".{}.tmp", step_file_name(step)));
@@ -202,7 +100,7 @@ pub fn pack_steps(lock: &FolderLock, keep: usize, per_file: usize) -> Result<usi
     Ok(steps.len())
 }
 
-/// Place among `steps` of the newest with a state. A damaged one has none to go on from.
+/// StepPlace among `steps` of the newest with a state. A damaged one has none to go on from.
 fn newest_state(dir: &Path, steps: &[u64]) -> Option<usize> {
     let has_state = |&step: &u64| has_state(&dir.join(step_file_name(step))).unwrap_or(false);
     steps.iter().rposition(has_state)
@@ -216,10 +114,10 @@ fn write_pack(dir: &Path, steps: &[u64]) -> Result<PathBuf, CheckpointError> {
     let written = atomic::write_hdf(dir, &name, Format::Earliest, |file| {
         let mut contents = Vec::new();
         for &step in steps {
-            let place = Place::single(dir, step);
+            let place = StepPlace::single(dir, step);
             let whole = verify_seal(&place.path)
                 .and_then(|()| require_run(&place.path, run.as_deref()))
-                .and_then(|()| Whole::read(&place));
+                .and_then(|()| WholeStep::read(&place));
             let whole = match whole {
                 Ok(whole) => whole,
                 Err(error) => {
@@ -251,11 +149,11 @@ pub fn unpack_steps(lock: &FolderLock) -> Result<usize, CheckpointError> {
     for (path, steps) in packs(dir)? {
         verify_seal(&path)?;
         for step in steps {
-            let single = Place::single(dir, step);
+            let single = StepPlace::single(dir, step);
             if single.path.exists() && read_step(&single.path).is_ok() {
                 continue;
             }
-            let whole = Whole::read(&Place::packed(&path, step))?;
+            let whole = WholeStep::read(&StepPlace::packed(&path, step))?;
             write_step_file(
                 dir,
                 &single.file_name(),
@@ -270,62 +168,4 @@ pub fn unpack_steps(lock: &FolderLock) -> Result<usize, CheckpointError> {
     }
     rebuild_index(dir)?;
     Ok(n_steps)
-}
-
-/// Numbers of all committed steps, packed or not, growing.
-pub fn all_steps(dir: &Path) -> Result<Vec<u64>, CheckpointError> {
-    let mut steps = committed_steps(dir)?;
-    steps.extend(packs(dir)?.into_iter().flat_map(|(_, packed)| packed));
-    steps.sort_unstable();
-    steps.dedup();
-    Ok(steps)
-}
-
-/// Names of the fields over points that a step of the run in `dir` holds, packed or not; no values are read.
-pub fn point_field_names(dir: &Path, step: u64) -> Result<Vec<String>, CheckpointError> {
-    let single = Place::single(dir, step);
-    let packed = packs(dir)?.into_iter().find(|(_, steps)| steps.contains(&step));
-    match packed {
-        Some((path, _)) if !single.path.exists() => Place::packed(&path, step).open()?.members(POINT_DATA),
-        _ => {
-            verify_structure(&single.path)?;
-            single.open()?.members(POINT_DATA)
-        }
-    }
-}
-
-/// Reads a step of the run in `dir`, packed or not; every value read is verified.
-pub fn read_any_step(dir: &Path, step: u64) -> Result<StepRecord, CheckpointError> {
-    let single = Place::single(dir, step);
-    let (mut packs, run) = (packs(dir)?.into_iter(), run_of(dir)?);
-    match packs.find(|(_, steps)| steps.contains(&step)) {
-        Some((path, _)) if !single.path.exists() => {
-            let place = Place::packed(&path, step);
-            let file = place.open()?;
-            require_run_in(&file, &path, run.as_deref())?;
-            read_record(&file, &path)
-        }
-        _ => {
-            require_run(&single.path, run.as_deref())?;
-            read_step(&single.path)
-        }
-    }
-}
-
-fn group_name(step: u64) -> String {
-    format!("step_{step:06}")
-}
-
-fn pack_name(first: u64, last: u64) -> String {
-    format!("pack_{first:06}_{last:06}.hdf")
-}
-
-/// First and last step in the name of a pack.
-pub(crate) fn pack_range(name: &str) -> Option<(u64, u64)> {
-    let (first, last) = name
-        .strip_prefix("pack_")?
-        .strip_suffix(".hdf")?
-        .split_once('_')?;
-    let range = (first.parse().ok()?, last.parse().ok()?);
-    (pack_name(range.0, range.1) == name).then_some(range)
 }

@@ -13,7 +13,7 @@ use crate::error::CheckpointError;
 use crate::mesh_file::{MESH_FILE, MESH_HASH, RUN};
 use crate::record::require_texts;
 use crate::seal::verify_seal;
-use crate::step::{ABOUT, Origin, POINT_DATA, PROGRAM_VERSION, read_texts, require_run_in};
+use crate::step::{ABOUT, POINT_DATA, PROGRAM_VERSION, StepOrigin, read_texts, require_run_in};
 use crate::storage::{Compression, Precision};
 
 /// Fields of a run.
@@ -42,7 +42,7 @@ pub(crate) fn write_table(
     name: &str,
     table: &PointTable,
     n_points: usize,
-    (origin, precision): (&Origin<'_>, Precision),
+    (origin, precision): (&StepOrigin<'_>, Precision),
 ) -> Result<(), CheckpointError> {
     require_texts(&table.about)?;
     for field in &table.fields {

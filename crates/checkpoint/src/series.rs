@@ -4,10 +4,7 @@ use std::path::Path;
 
 use crate::atomic;
 use crate::error::CheckpointError;
-use crate::folder::step_file_name;
-
-/// Name of the file in the result folder.
-pub const SERIES_FILE: &str = "run.hdf.series";
+use crate::names::{SERIES_FILE, step_file_name};
 
 /// Replaces the series file by one that lists `steps`: number and time, s, of each.
 pub(crate) fn write_series(dir: &Path, steps: &[(u64, f64)]) -> Result<(), CheckpointError> {

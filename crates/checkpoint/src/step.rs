@@ -29,9 +29,10 @@ use crate::dataset::{
     CheckedFile, create_group, create_vtkhdf, link_mesh, write_array, write_field, write_text,
 };
 use crate::error::CheckpointError;
+use crate::field::IN_REGION;
 use crate::growing::{Stamps, parse_stamps, stamps_text};
 use crate::mesh_file::{MESH_FILE, MESH_HASH, RUN};
-use crate::record::{IN_REGION, PointFields, StateArray, StepRecord};
+use crate::record::{PointFields, StateArray, StepRecord};
 use crate::seal::{verify_seal, verify_structure};
 use crate::storage::{Compression, Precision, Storage};
 
@@ -52,7 +53,7 @@ const STATE: &str = "/restart/state";
 pub(crate) const ABOUT: &str = "/restart/about";
 
 /// Texts of a step that are not of its record.
-pub(crate) struct Origin<'a> {
+pub(crate) struct StepOrigin<'a> {
     pub program_version: &'a str,
     pub mesh_hash: &'a str,
     pub run: Option<&'a str>,
@@ -64,7 +65,7 @@ pub(crate) fn write_step_file(
     dir: &Path,
     name: &str,
     record: &StepRecord,
-    origin: &Origin,
+    origin: &StepOrigin,
     storage: Storage,
 ) -> Result<(), CheckpointError> {
     atomic::write_hdf(dir, name, Format::Earliest, |file| {
@@ -78,7 +79,7 @@ pub(crate) fn write_step_file(
 pub(crate) fn fill_step(
     group: &hdf5::Group,
     record: &StepRecord,
-    origin: &Origin,
+    origin: &StepOrigin,
     storage: Storage,
 ) -> hdf5::Result<Vec<String>> {
     create_group(group, "VTKHDF/FieldData")?;

@@ -2,7 +2,17 @@
 
 use std::ops::Range;
 
-use crate::environment;
+use crate::failing;
+
+/// Set once MPI runs: the library itself is one per process.
+#[cfg(feature = "mpi")]
+static RUNNING: std::sync::OnceLock<()> = std::sync::OnceLock::new();
+
+/// From now on the ranks are those of MPI.
+#[cfg(feature = "mpi")]
+pub(crate) fn note_running() {
+    let _ = RUNNING.set(());
+}
 
 /// The ranks of a run.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -18,7 +28,11 @@ pub enum Communicator {
 impl Communicator {
     /// The ranks that the launcher has started, once [`crate::Environment::start`] has been called; one before.
     pub fn world() -> Communicator {
-        environment::world()
+        #[cfg(feature = "mpi")]
+        if RUNNING.get().is_some() {
+            return Communicator::Mpi;
+        }
+        Communicator::Serial
     }
 
     /// Number of this rank, from 0.
@@ -178,7 +192,7 @@ impl Communicator {
                     return result;
                 };
                 if !first.of_all && result.is_err() {
-                    environment::note_own_failure();
+                    failing::note_own_failure();
                 }
                 Err(result.err().unwrap_or_else(|| elsewhere(first.rank, first.text)))
             }
@@ -204,13 +218,13 @@ impl Communicator {
         match self {
             Communicator::Serial => true,
             #[cfg(feature = "mpi")]
-            Communicator::Mpi => environment::all_failed(),
+            Communicator::Mpi => failing::all_failed(),
         }
     }
 
     /// Whether an agreement has failed by this rank and not by all: then its message has to name the rank.
     pub fn has_failed_alone(self) -> bool {
-        environment::has_failed_alone()
+        failing::has_failed_alone()
     }
 
     /// Ends all ranks at once with an exit code.

@@ -1,18 +1,8 @@
 //! Start and end of a process as one of the ranks.
 
-use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::Duration;
-
 use crate::communicator::Communicator;
 use crate::error::CommError;
 use crate::launch;
-
-/// How long a rank that has failed waits for the others to fail as well before it ends them.
-pub const PATIENCE: Duration = Duration::from_secs(2);
-
-/// How long a rank whose computation has failed waits for those of the others to fail as well. Longer than
-/// [`PATIENCE`], because ranks that go on compute until they fail.
-pub const FAILURE_PATIENCE: Duration = Duration::from_secs(10);
 
 /// A process among its ranks; to be kept until the end.
 pub struct Environment {
@@ -22,7 +12,7 @@ pub struct Environment {
 
 /// How a process ends among its ranks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum End {
+pub enum ProcessEnd {
     /// All ranks have ended.
     Together,
     /// This rank has failed alone; the others still run.
@@ -49,15 +39,15 @@ impl Environment {
         Ok(Environment { mpi })
     }
 
-    /// Waits for all ranks to end. A rank that failed waits [`PATIENCE`] only, and then learns that it is alone: the
-    /// others wait for its messages, and it must end them with [`Environment::abort`].
-    pub fn finish(&self, success: bool) -> End {
+    /// Waits for all ranks to end. A rank that failed waits [`crate::PATIENCE`] only, and then learns that it is alone:
+    /// the others wait for its messages, and it must end them with [`Environment::abort`].
+    pub fn finish(&self, success: bool) -> ProcessEnd {
         #[cfg(feature = "mpi")]
         if let Some(mpi) = &self.mpi {
             return mpi.finish(success);
         }
         let _ = success;
-        End::Together
+        ProcessEnd::Together
     }
 
     /// Ends all ranks at once with an exit code.
@@ -66,93 +56,20 @@ impl Environment {
     }
 }
 
-/// Whether an agreement has failed by this rank and not by all.
-static OWN_FAILURE: AtomicBool = AtomicBool::new(false);
-
-#[cfg(feature = "mpi")]
-pub(crate) fn note_own_failure() {
-    OWN_FAILURE.store(true, Ordering::Relaxed);
-}
-
-pub(crate) fn has_failed_alone() -> bool {
-    OWN_FAILURE.load(Ordering::Relaxed)
-}
-
-#[cfg(not(feature = "mpi"))]
-pub(crate) fn world() -> Communicator {
-    Communicator::Serial
-}
-
-#[cfg(feature = "mpi")]
-pub(crate) use parallel::{all_failed, world};
-
 #[cfg(feature = "mpi")]
 mod parallel {
-    use std::cell::{Cell, RefCell};
-    use std::sync::OnceLock;
-    use std::time::{Duration, Instant};
-
     use mpi::Threading;
-    use mpi::collective::CommunicatorCollectives;
     use mpi::environment::Universe;
     use mpi::topology::{Communicator as _, SimpleCommunicator};
 
-    use super::{Communicator, End, FAILURE_PATIENCE, PATIENCE};
+    use super::ProcessEnd;
+    use crate::communicator;
     use crate::error::CommError;
+    use crate::failing::{self, PATIENCE, meet};
     use crate::messages;
 
     /// Exit code of a panic, as that of a process alone.
     const PANICKED: i32 = 101;
-
-    /// Set once MPI runs: the library itself is one per process.
-    static RUNNING: OnceLock<()> = OnceLock::new();
-
-    thread_local! {
-        /// A set of the same ranks on which those meet that have failed; of the main thread, which sends all messages.
-        static FAILING: RefCell<Option<SimpleCommunicator>> = const { RefCell::new(None) };
-        /// Whether this rank has waited for the others to fail in vain.
-        static ALONE: Cell<bool> = const { Cell::new(false) };
-    }
-
-    pub(crate) fn world() -> Communicator {
-        match RUNNING.get() {
-            Some(()) => Communicator::Mpi,
-            None => Communicator::Serial,
-        }
-    }
-
-    /// Whether all ranks call this within [`FAILURE_PATIENCE`]. Once they have not, the answer stays.
-    pub(crate) fn all_failed() -> bool {
-        let met = || {
-            FAILING.with_borrow(|ranks| {
-                ranks
-                    .as_ref()
-                    .is_none_or(|ranks| meet(ranks, Some(FAILURE_PATIENCE)))
-            })
-        };
-        if !ALONE.get() && !met() {
-            ALONE.set(true);
-        }
-        !ALONE.get()
-    }
-
-    /// Waits for all ranks to come here, not longer than the patience, if any; whether they came.
-    fn meet(ranks: &SimpleCommunicator, patience: Option<Duration>) -> bool {
-        let start = Instant::now();
-        let mut barrier = ranks.immediate_barrier();
-        loop {
-            barrier = match barrier.test() {
-                Ok(_) => return true,
-                Err(pending) => pending,
-            };
-            if patience.is_some_and(|patience| start.elapsed() > patience) {
-                // The barrier is never completed: the process ends with it.
-                std::mem::forget(barrier);
-                return false;
-            }
-            std::thread::sleep(Duration::from_millis(1));
-        }
-    }
 
     /// MPI, running.
     pub(super) struct Mpi {
@@ -185,8 +102,8 @@ mod parallel {
                     library,
                 });
             }
-            let _ = RUNNING.set(());
-            FAILING.set(Some(SimpleCommunicator::world().duplicate()));
+            communicator::note_running();
+            failing::prepare(SimpleCommunicator::world().duplicate());
             let (rank, shown) = (messages::rank(), std::panic::take_hook());
             std::panic::set_hook(Box::new(move |panic| {
                 crate::print::from_any_rank(format_args!("error: on rank {rank}: a fault of the program:"));
@@ -200,11 +117,11 @@ mod parallel {
             })
         }
 
-        pub(super) fn finish(&self, success: bool) -> End {
+        pub(super) fn finish(&self, success: bool) -> ProcessEnd {
             let patience = (!success).then_some(PATIENCE);
             match meet(&self.ending, patience) {
-                true => End::Together,
-                false => End::Alone,
+                true => ProcessEnd::Together,
+                false => ProcessEnd::Alone,
             }
         }
     }
@@ -212,7 +129,7 @@ mod parallel {
     impl Drop for Mpi {
         fn drop(&mut self) {
             // Before MPI ends, with the universe.
-            FAILING.take();
+            failing::forget();
         }
     }
 }

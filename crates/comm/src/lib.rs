@@ -16,6 +16,7 @@
 mod communicator;
 mod environment;
 mod error;
+mod failing;
 #[cfg(feature = "inject")]
 mod inject;
 mod launch;
@@ -24,5 +25,6 @@ mod messages;
 pub mod print;
 
 pub use communicator::{Communicator, shares};
-pub use environment::{End, Environment, FAILURE_PATIENCE, PATIENCE};
+pub use environment::{Environment, ProcessEnd};
 pub use error::CommError;
+pub use failing::{FAILURE_PATIENCE, PATIENCE};

@@ -1,7 +1,7 @@
 //! What a run spends its time on: names of the laps of the solver, and a lap for every effect.
 //!
 //! Laps live in the workspace of a solver, never in an effect, and nothing that is computed depends on them.
-//! Effects that add loads are timed by [`crate::effects::timed_loads`]; those inside the steps of a motion time
+//! Effects that add loads are timed by [`crate::Model::timed_loads`]; those inside the steps of a motion time
 //! themselves.
 
 use timer::{Laps, SharedLaps};

@@ -15,7 +15,6 @@ use input::schedule::piecewise_linear;
 use serde::Deserialize;
 
 use crate::effects::Now;
-use crate::model::Model;
 use crate::pose::Pose;
 
 /// Speed of a ring as a piecewise linear function of time.
@@ -229,12 +228,12 @@ pub enum BallSpeeds {
 
 impl BallSpeeds {
     /// Turning of one ball at an instant, with slip ratios at the inner and outer raceway.
-    pub fn of_ball(self, model: &Model, now: &Now, slip: SlipRatios, ball: usize) -> Kinematics {
+    pub fn of_ball(self, geometry: &BearingGeometry, now: &Now, slip: SlipRatios, ball: usize) -> Kinematics {
         match self {
-            BallSpeeds::FreeAngle => Kinematics::new(&model.geometry, slip),
+            BallSpeeds::FreeAngle => Kinematics::new(geometry, slip),
             BallSpeeds::OuterControl => {
-                let angles = Side::BOTH.map(|side| now.contact_angle(model, ball, side));
-                Kinematics::outer_control(&model.geometry, slip, angles)
+                let angles = Side::BOTH.map(|side| now.contact_angle(geometry, ball, side));
+                Kinematics::outer_control(geometry, slip, angles)
             }
         }
     }

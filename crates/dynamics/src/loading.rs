@@ -16,9 +16,10 @@ use crate::bearing::{BearingParts, ContactList, SeatStep};
 use crate::bodies::{FlatBody, Inertia, Name};
 use crate::displacements::Displacements;
 use crate::effects::steady_balls::SteadyBalls;
-use crate::effects::{self, AtEquilibrium, Loads, Now};
+use crate::effects::{AtEquilibrium, Loads, Now, resultant, static_inertia};
 use crate::equilibrium::SearchScales;
 use crate::error::DynamicsError;
+use crate::frame::{turn, turn_nodal};
 use crate::interactions::raceway_contact::Site;
 use crate::model::Model;
 use crate::pose::Pose;
@@ -57,7 +58,7 @@ impl<'a> LoadCase<'a> {
             model,
             pose,
             parts,
-            loads: Loads::none(model),
+            loads: Loads::none(model.geometry.n_balls),
             scales: SearchScales::new(&model.geometry, stiffness),
             newton_iterations: 0,
         };
@@ -69,9 +70,9 @@ impl<'a> LoadCase<'a> {
     /// Loads at the contact angles and forces of `u`.
     fn loads_at(&self, costs: &SharedLaps, u: &Displacements) -> Result<Loads, DynamicsError> {
         self.with_now(u, |now| {
-            let loads = effects::timed_loads(self.model, now, costs)?;
-            let inertia = effects::static_inertia(self.model, &loads)?;
-            self.pose.in_frames(self.model, loads, inertia)
+            let loads = self.model.timed_loads(now, costs)?;
+            let inertia = static_inertia(self.model, &loads)?;
+            in_frames(&self.pose, self.model, loads, inertia)
         })
     }
 
@@ -312,4 +313,30 @@ pub fn largest_change(old: &[[f64; 2]], new: &[[f64; 2]], scale: f64) -> (f64, u
                 (largest, place)
             }
         })
+}
+
+/// Loads of which those on the nodes of flexible rings are given in the rings' own frames, and the shaft carries
+/// the resultant on the inner ring where the turned nodes stand. `inertia` are loads in these frames, inner first,
+/// N, `[n_nodes][3]` flat; they have no force along z. Collective.
+fn in_frames(
+    pose: &Pose,
+    model: &Model,
+    mut loads: Loads,
+    inertia: [Option<Vec<f64>>; 2],
+) -> Result<Loads, DynamicsError> {
+    for (side, inertia) in Side::BOTH.into_iter().zip(inertia) {
+        let in_space = loads.rings[side.index()].take();
+        let turned = in_space.map(|load| turn_nodal(&load, -pose.frame_angle(side)));
+        loads.rings[side.index()] = match (turned, inertia) {
+            (Some(load), Some(inertia)) => Some(load.iter().zip(&inertia).map(|(a, b)| a + b).collect()),
+            (load, inertia) => load.or(inertia),
+        };
+    }
+    let inner = model.ring(Side::Inner).zip(loads.rings[0].as_ref());
+    if let Some((ring, load)) = inner {
+        let places = ring.places(Side::Inner.name(), model.backend)?;
+        let resultant = resultant(&places, ring.groove.centre_z, load);
+        loads.ring_on_shaft = turn(resultant, pose.frame_angle(Side::Inner));
+    }
+    Ok(loads)
 }

@@ -1,4 +1,5 @@
-//! The Model: everything that a scene fixes and that never changes during a run.
+//! The Model: everything that a scene fixes and that never changes during a run, and the trait of the effects in it.
+//! An effect is immutable as well: it cannot hide state.
 //!
 //! Frames: the outer ring's mesh is placed with its groove centres at z = 0; the inner ring's with its groove
 //! centres at z = A sin a0 (the just-touching position). The shaft's origin is the axis point in the plane of the
@@ -15,11 +16,15 @@ use fem::Material;
 use input::Schedule;
 use ring::rigid::RigidInertia;
 use ring::{Backend, RingModel};
+use timer::SharedLaps;
 
-use crate::effects::Effect;
+use crate::balls::BallResult;
+use crate::effects::{Loads, Now};
+use crate::error::DynamicsError;
 use crate::interactions::cage::design::Cage;
 use crate::interactions::seat_spring::Seat;
 use crate::interactions::traction::{Ellipse, Traction};
+use crate::kinematics::RingSpeeds;
 use crate::mounting::Mounting;
 use crate::surfaces::Surfaces;
 
@@ -128,6 +133,50 @@ pub struct Model {
     pub backend: Backend,
     /// Stopping rules.
     pub tolerances: Tolerances,
+}
+
+/// What an effect with loads is in a bearing.
+pub trait Effect: Send + Sync {
+    /// Name of its scene table.
+    fn name(&self) -> &'static str;
+
+    /// Adds its loads at an instant.
+    fn add_loads(&self, model: &Model, now: &Now, loads: &mut Loads) -> Result<(), DynamicsError>;
+
+    /// Whether it is the inertia of a ring's turning frame.
+    fn turns_frame(&self, _side: Side) -> bool {
+        false
+    }
+
+    /// Slot of interactions: the spring that holds the outer ring along the axis, whose seat then slides.
+    fn seat(&self) -> Option<Seat> {
+        None
+    }
+
+    /// Uniform acceleration that acts on every mass at an instant, m/s^2: the load of a free ball, in space.
+    fn acceleration(&self, _now: &Now) -> [f64; 3] {
+        [0.0; 3]
+    }
+
+    /// Slot of free balls: speeds of the rings between which they roll in an equilibrium.
+    fn rolling_speeds(&self) -> Option<&RingSpeeds> {
+        None
+    }
+
+    /// Slot of free balls: their traction; balls are free where there is one.
+    fn traction(&self) -> Option<&Traction> {
+        None
+    }
+
+    /// Drag on a free ball over the square of its speed, N s^2/m^2.
+    fn drag(&self, _model: &Model) -> f64 {
+        0.0
+    }
+
+    /// What a reader of an equilibrium should know: where the effect is beyond what it assumes.
+    fn warning(&self, _model: &Model, _now: &Now, _balls: &[BallResult]) -> Option<String> {
+        None
+    }
 }
 
 impl Model {
@@ -262,6 +311,20 @@ impl Model {
     /// Mass of one ball, kg.
     pub fn ball_mass(&self) -> f64 {
         std::f64::consts::PI / 6.0 * self.geometry.ball_diameter.powi(3) * self.ball_material.density
+    }
+
+    /// Loads of all effects of the model at an instant.
+    pub fn loads(&self, now: &Now) -> Result<Loads, DynamicsError> {
+        self.timed_loads(now, &SharedLaps::default())
+    }
+
+    /// [`Model::loads`], with the time of each effect added to `costs`.
+    pub fn timed_loads(&self, now: &Now, costs: &SharedLaps) -> Result<Loads, DynamicsError> {
+        let mut loads = Loads::none(self.geometry.n_balls);
+        for effect in &self.effects {
+            costs.time(effect.name(), || effect.add_loads(self, now, &mut loads))?;
+        }
+        Ok(loads)
     }
 }
 

@@ -6,10 +6,7 @@
 
 use contact::Side;
 
-use crate::effects::{Loads, Now, resultant};
-use crate::error::DynamicsError;
-use crate::frame::{turn, turn_nodal};
-use crate::model::Model;
+use crate::effects::Now;
 
 /// Time and angles of an instant; the default is a bearing that has not turned, at time 0.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -26,31 +23,5 @@ impl Pose {
     /// Angle by which the mesh of a ring is turned in space, rad.
     pub fn frame_angle(&self, side: Side) -> f64 {
         self.ring_angles[side.index()]
-    }
-
-    /// Loads of which those on the nodes of flexible rings are given in the rings' own frames, and the shaft carries
-    /// the resultant on the inner ring where the turned nodes stand. `inertia` are loads in these frames, inner first,
-    /// N, `[n_nodes][3]` flat; they have no force along z. Collective.
-    pub(crate) fn in_frames(
-        &self,
-        model: &Model,
-        mut loads: Loads,
-        inertia: [Option<Vec<f64>>; 2],
-    ) -> Result<Loads, DynamicsError> {
-        for (side, inertia) in Side::BOTH.into_iter().zip(inertia) {
-            let in_space = loads.rings[side.index()].take();
-            let turned = in_space.map(|load| turn_nodal(&load, -self.frame_angle(side)));
-            loads.rings[side.index()] = match (turned, inertia) {
-                (Some(load), Some(inertia)) => Some(load.iter().zip(&inertia).map(|(a, b)| a + b).collect()),
-                (load, inertia) => load.or(inertia),
-            };
-        }
-        let inner = model.ring(Side::Inner).zip(loads.rings[0].as_ref());
-        if let Some((ring, load)) = inner {
-            let places = ring.places(Side::Inner.name(), model.backend)?;
-            let resultant = resultant(&places, ring.groove.centre_z, load);
-            loads.ring_on_shaft = turn(resultant, self.frame_angle(Side::Inner));
-        }
-        Ok(loads)
     }
 }

@@ -92,12 +92,6 @@ impl StaticSolution {
         let hertz_energy = states.iter().map(|state| state.force.energy).sum();
         let contact_work: f64 = parts.contacts.sites.iter().zip(&states).map(contact_work).sum();
         let [finite_work, finite_load] = finite_work(parts, &finite, &forces);
-        let slopes = parts.balls.iter().map(|ball| ball.dofs[0].load_slope);
-        let loads = (0..parts.balls.len()).map(|ball| parts.ball_load(ball));
-        let ball_work = loads.zip(slopes).zip(&u.balls);
-        let ball_work: f64 = ball_work
-            .map(|((f, slope), x)| dot(&[f[0] + slope * x[0], f[1]], x))
-            .sum();
         let mut balls = ball_results(model, parts, &states, &u);
         let steady = case.steady(&u)?;
         if let Some(steady) = &steady {
@@ -105,7 +99,7 @@ impl StaticSolution {
                 ball.free = Some(steady.result(i, ball.azimuth_rad));
             }
         }
-        let load_work = ball_work
+        let load_work = ball_work(parts, &u)
             + dot(&parts.shaft_load(), &u.shaft)
             + dot(
                 &parts.shaft.tilted_moments(Interval::Rest, &u.shaft),
@@ -115,16 +109,7 @@ impl StaticSolution {
             + seat_work(parts, &u)
             + finite_load;
         Ok(StaticSolution {
-            warnings: warnings(model, &rings.footprints, &forces, &balls)
-                .into_iter()
-                .chain(friction_warning(&forces, &case.loads.contacts))
-                .chain(
-                    model
-                        .effects
-                        .iter()
-                        .filter_map(|e| e.warning(model, &case.pose.now, &balls)),
-                )
-                .collect(),
+            warnings: all_warnings(&case, &rings.footprints, &forces, &balls),
             balls,
             steady,
             work_defect: load_work + dot(&reaction, &u.shaft)
@@ -179,6 +164,35 @@ impl StaticSolution {
             .filter_map(|f| f.semi_axes)
             .collect()
     }
+}
+
+/// Work of the loads on the balls over their displacements, J.
+fn ball_work(parts: &BearingParts, u: &Displacements) -> f64 {
+    let slopes = parts.balls.iter().map(|ball| ball.dofs[0].load_slope);
+    let loads = (0..parts.balls.len()).map(|ball| parts.ball_load(ball));
+    let ball_work = loads.zip(slopes).zip(&u.balls);
+    ball_work
+        .map(|((f, slope), x)| dot(&[f[0] + slope * x[0], f[1]], x))
+        .sum()
+}
+
+/// What a reader of the equilibrium should know, of contacts, their friction and the effects.
+fn all_warnings(
+    case: &LoadCase,
+    footprints: &[Vec<Footprint>; 2],
+    forces: &[[f64; 2]],
+    balls: &[BallResult],
+) -> Vec<String> {
+    warnings(case.model, footprints, forces, balls)
+        .into_iter()
+        .chain(friction_warning(forces, &case.loads.contacts))
+        .chain(
+            case.model
+                .effects
+                .iter()
+                .filter_map(|e| e.warning(case.model, &case.pose.now, balls)),
+        )
+        .collect()
 }
 
 /// What the virtual work of loads that follow a displacement, -k u, has more than their energy, J: half of it.

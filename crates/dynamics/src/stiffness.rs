@@ -37,7 +37,7 @@ use timer::SharedLaps;
 use crate::bearing::{BearingParts, CONTACTS, lengths};
 use crate::compliance;
 use crate::condensation::Condensation;
-use crate::effects::{self, Loads, Now, RingDamping};
+use crate::effects::{Loads, Now, RingDamping};
 use crate::error::DynamicsError;
 use crate::interactions::contact_damping::{ContactDamping, coefficient};
 use crate::loading::LoadCase;
@@ -305,7 +305,7 @@ fn add_following_loads(
             angles: Some(angles),
             ..solution.pose.now
         };
-        let found = effects::loads(model, &now)?;
+        let found = model.loads(&now)?;
         parts.set_loads(&Loads {
             ring_on_shaft: case.loads.ring_on_shaft,
             ring_on_seat: case.loads.ring_on_seat,

@@ -47,15 +47,19 @@ fn a_scene_without_an_effect_pays_nothing() {
         matrices: 2,
     };
     assert_eq!(counted(&bare), rings, "one factor per ring");
-    let loads = effects::loads(&bare, &Now::default()).unwrap();
-    assert_eq!(loads, effects::Loads::none(&bare), "no load of any body");
+    let loads = bare.loads(&Now::default()).unwrap();
+    assert_eq!(
+        loads,
+        effects::Loads::none(bare.geometry.n_balls),
+        "no load of any body"
+    );
     assert!(loads.rings.iter().all(Option::is_none), "no nodal vector");
 
     let heavy = flexible(vec![Box::new(
         Gravity::new([0.0, -9.81, 0.0], Schedule::Constant, &bare.rings).unwrap(),
     )]);
     assert_eq!(counted(&heavy), rings, "a load needs no dof and no matrix");
-    let loads = effects::loads(&heavy, &Now::default()).unwrap();
+    let loads = heavy.loads(&Now::default()).unwrap();
     assert!(loads.rings.iter().all(Option::is_some));
 }
 
@@ -92,7 +96,7 @@ fn gravity_on_nodal_masses_is_the_body_load() {
     let g = [1.5, -9.81, 0.7];
     let model = flexible(Vec::new());
     let gravity = Gravity::new(g, Schedule::Constant, &model.rings).unwrap();
-    let mut loads = effects::Loads::none(&model);
+    let mut loads = effects::Loads::none(model.geometry.n_balls);
     gravity.add_loads(&model, &Now::default(), &mut loads).unwrap();
     for side in Side::BOTH {
         let ring = model.ring(side).unwrap();
@@ -122,7 +126,7 @@ fn costs_are_kept_by_effect() {
     })];
     let costs = of_effects(&model);
     assert_eq!(by_name(&costs.laps()), [("axial_force", 0.0)]);
-    effects::timed_loads(&model, &Now::default(), &costs).unwrap();
+    model.timed_loads(&Now::default(), &costs).unwrap();
     let before = costs.laps();
     assert_eq!(by_name(&before).len(), 1);
     let answer = costs.time("contact_damping", || {

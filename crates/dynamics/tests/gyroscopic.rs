@@ -3,7 +3,7 @@
 mod support;
 
 use contact::Side;
-use dynamics::effects::{self, BallCentrifugal, GyroscopicMoment, Now};
+use dynamics::effects::{BallCentrifugal, GyroscopicMoment, Now};
 use dynamics::kinematics::{BallSpeeds, Kinematics, Speed};
 use dynamics::{ContactMode, Hold, Model, Pose, StaticSolution, StaticSolver};
 use support::finite::{InnerContact, cross};
@@ -54,7 +54,7 @@ fn friction_supplies_the_rate_of_the_angular_momentum() {
             cage_angle: 0.2,
             ..Now::default()
         };
-        let loads = effects::loads(&model, &now).unwrap();
+        let loads = model.loads(&now).unwrap();
         let kinematics = Kinematics::new(g, [0.0; 2]);
         for ball in 0..g.n_balls {
             let (sin_psi, cos_psi) = (g.azimuth(ball) + 0.2).sin_cos();

@@ -35,7 +35,7 @@ impl Effect for Pulse {
     }
 
     fn add_loads(&self, model: &Model, now: &Now, loads: &mut Loads) -> Result<(), DynamicsError> {
-        loads.add_shaft_force(model, [pulse(now.time), 0.0, 0.0]);
+        loads.add_shaft_force_at(model.load_point, [pulse(now.time), 0.0, 0.0]);
         Ok(())
     }
 }

@@ -51,9 +51,9 @@ fn off_the_groove_plane_it_tilts_as_a_force_there_does() {
     let speed = Speed::constant(300.0);
     let mut model = Case::axial(0.0).rigid();
     model.effects.clear();
-    let bare = effects::Loads::none(&model);
+    let bare = effects::Loads::none(model.geometry.n_balls);
     let model = unbalanced(model, &speed, 0.04);
-    let found = effects::loads(&model, &Now::default()).unwrap();
+    let found = model.loads(&Now::default()).unwrap();
     let force = [ANGLE.cos(), ANGLE.sin()].map(|x| MOMENT * 9e4 * x);
     let expected = [force[0], force[1], 0.0, -0.04 * force[1], 0.04 * force[0]];
     for (a, b) in found.shaft.iter().zip(expected) {

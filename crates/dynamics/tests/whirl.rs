@@ -265,7 +265,7 @@ impl Effect for Push {
     fn add_loads(&self, model: &Model, now: &Now, loads: &mut Loads) -> Result<(), DynamicsError> {
         if now.time < PUSH[0] {
             let share = (std::f64::consts::PI * now.time / PUSH[0]).sin();
-            loads.add_shaft_force(model, [PUSH[1] * share * share, 0.0, 0.0]);
+            loads.add_shaft_force_at(model.load_point, [PUSH[1] * share * share, 0.0, 0.0]);
         }
         Ok(())
     }

@@ -2,25 +2,21 @@
 //!
 //! The drawing library places everything on whole units; a unit here is a tenth of an SVG pixel.
 
-use plotters::coord::Shift;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, VPos};
 
+use crate::canvas::{Canvas, Drawn, UNITS, style, units, write};
 use crate::labels::{Obstacles, place};
-use crate::layout::{GAP, LINE_WIDTH, Layout, TEXT, TICK, TITLE, lay_out};
+use crate::layout::{Layout, lay_out};
 use crate::marks::{self, Pen};
-use crate::surface::draw_surface;
+use crate::page::{GAP, LINE_WIDTH, Rect, TEXT, TICK, TITLE};
+use crate::surface::draw::draw_surface;
 use crate::text::{self, FONT, FONTS, LINE, Weight};
 use crate::ticked::Ticked;
 use crate::{Figure, FigureError, Look};
 
-/// Units of the drawing per SVG pixel.
-pub const UNITS: f64 = 10.0;
 /// How often a figure grows by a quarter when its labels find no place.
 const GROWTHS: u32 = 6;
-
-/// The area everything is drawn on.
-pub type Canvas<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 
 /// The figure as SVG. If the labels of points find no place, the picture grows until they do.
 pub fn draw(figure: &Figure) -> Result<String, FigureError> {
@@ -84,9 +80,6 @@ fn draw_once(figure: &Figure, layout: &Layout) -> Result<Option<String>, FigureE
     }
     Ok(Some(finish(&svg, figure, size)))
 }
-
-/// Result of drawing.
-pub type Drawn = Result<(), DrawingAreaErrorKind<std::io::Error>>;
 
 fn draw_all(figure: &Figure, layout: &Layout, pen: &Pen, canvas: &Canvas) -> Drawn {
     canvas.fill(&WHITE)?;
@@ -157,14 +150,8 @@ fn draw_names(figure: &Figure, layout: &Layout, canvas: &Canvas) -> Drawn {
     Ok(())
 }
 
-/// A text, its middle line at y and its left end, middle or right end at x.
-pub fn write(canvas: &Canvas, text: &str, at: [f64; 2], size: f64, weight: Weight, x_pos: HPos) -> Drawn {
-    let style = style(size, weight).pos(plotters::style::text_anchor::Pos::new(x_pos, VPos::Center));
-    canvas.draw(&Text::new(text.to_string(), units(at), style))
-}
-
 /// A text that reads upward, its middle line at x, centred on the axes as far as the picture allows.
-fn write_upward(canvas: &Canvas, text: &str, x: f64, figure: &Figure, plot: crate::layout::Rect) -> Drawn {
+fn write_upward(canvas: &Canvas, text: &str, x: f64, figure: &Figure, plot: Rect) -> Drawn {
     let height = f64::from(figure.size.1);
     let text = text::fit(text, TEXT, Weight::Regular, height - 2.0 * GAP);
     let overhang = 0.5 * text::width(&text, TEXT, Weight::Regular) + GAP;
@@ -173,12 +160,6 @@ fn write_upward(canvas: &Canvas, text: &str, x: f64, figure: &Figure, plot: crat
         .transform(FontTransform::Rotate270)
         .pos(plotters::style::text_anchor::Pos::new(HPos::Center, VPos::Center));
     canvas.draw(&Text::new(text, units([x, y]), style))
-}
-
-/// Style of a text; plotters writes a font size of its size over 1.24.
-pub fn style(size: f64, weight: Weight) -> TextStyle<'static> {
-    let font = FontDesc::new(FontFamily::Name(FONT), size * UNITS * 1.24, weight.style());
-    TextStyle::from(font).color(&BLACK)
 }
 
 /// Marks and lines that labels stay off, pixels.
@@ -200,11 +181,6 @@ fn obstacles(figure: &Figure, pen: &Pen) -> (Vec<[f64; 2]>, Vec<[[f64; 2]; 2]>) 
         }
     }
     (all_marks, lines)
-}
-
-/// A place in units of the drawing.
-pub fn units([x, y]: [f64; 2]) -> (i32, i32) {
-    ((x * UNITS).round() as i32, (y * UNITS).round() as i32)
 }
 
 fn length(pixels: f64) -> i32 {

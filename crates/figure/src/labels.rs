@@ -1,6 +1,6 @@
 //! Places for the labels of points: near their point, inside the axes, on no mark, no line and no other label.
 
-use crate::layout::{Rect, TEXT};
+use crate::page::{Rect, TEXT};
 use crate::text::{self, LINE, Weight};
 
 /// Half the size of a mark with its surroundings.

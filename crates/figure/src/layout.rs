@@ -2,51 +2,15 @@
 
 use crate::axis::Axis;
 use crate::legend::{self, Legend};
+use crate::page::{GAP, Rect, TEXT, TICK, TITLE};
 use crate::text::{self, LINE, Weight};
 use crate::ticks::Ticks;
 use crate::{Figure, FigureError, Surface};
 
-/// Size of running text.
-pub const TEXT: f64 = 13.0;
-/// Size of titles.
-pub const TITLE: f64 = 15.0;
-/// Free space at the edges of the picture, and between its parts.
-pub const GAP: f64 = 8.0;
-/// Distance of the labels of ticks from their axis.
-pub const TICK: f64 = 10.0;
-/// Width of the lines of axes and references, in units of the drawing.
-pub const LINE_WIDTH: u32 = 10;
 /// Width of the colour bar.
 const BAR: f64 = 16.0;
 /// Smallest width and height of the area between the axes.
 const SMALLEST: f64 = 60.0;
-
-/// A rectangle with left, top, right and bottom.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Rect {
-    pub left: f64,
-    pub top: f64,
-    pub right: f64,
-    pub bottom: f64,
-}
-
-impl Rect {
-    /// Whether two rectangles share an area.
-    pub fn overlaps(&self, other: &Rect) -> bool {
-        self.left < other.right
-            && other.left < self.right
-            && self.top < other.bottom
-            && other.top < self.bottom
-    }
-
-    /// Whether `other` lies inside.
-    pub fn holds(&self, other: &Rect) -> bool {
-        self.left <= other.left
-            && other.right <= self.right
-            && self.top <= other.top
-            && other.bottom <= self.bottom
-    }
-}
 
 /// Range of an axis, in places, and its ticks.
 #[derive(Clone, Debug)]
@@ -117,12 +81,6 @@ pub fn lay_out(figure: &Figure) -> Result<Layout, FigureError> {
     if let Some(value) = &mut value {
         separate(value, bottom - top, line_height);
     }
-    let bar_left = right + 2.0 * GAP;
-    let bar = Rect {
-        left: bar_left,
-        right: bar_left + BAR,
-        ..plot
-    };
     Ok(Layout {
         title,
         note: (note, note_top + 0.5 * LINE * TEXT),
@@ -130,8 +88,18 @@ pub fn lay_out(figure: &Figure) -> Result<Layout, FigureError> {
         plot,
         x,
         y,
-        bar: value.map(|span| (bar, span)),
+        bar: value.map(|span| (bar_beside(plot), span)),
     })
+}
+
+/// The colour bar beside the area between the axes.
+fn bar_beside(plot: Rect) -> Rect {
+    let left = plot.right + 2.0 * GAP;
+    Rect {
+        left,
+        right: left + BAR,
+        ..plot
+    }
 }
 
 /// Range and ticks of axis 0 (x) or 1 (y), from all that is drawn.

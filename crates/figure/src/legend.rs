@@ -1,7 +1,7 @@
 //! The legend: rows of names above the axes, so that it covers no data.
 
 use crate::Figure;
-use crate::layout::{GAP, TEXT};
+use crate::page::{GAP, TEXT};
 use crate::series::{Look, Series};
 use crate::text::{self, Weight};
 

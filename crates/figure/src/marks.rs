@@ -2,9 +2,10 @@
 
 use plotters::prelude::*;
 
-use crate::chart::{Canvas, Drawn, UNITS, units, write};
-use crate::layout::{LINE_WIDTH, Layout, Rect, TEXT};
+use crate::canvas::{Canvas, Drawn, UNITS, units, write};
+use crate::layout::Layout;
 use crate::legend::{Entry, SAMPLE, style_index};
+use crate::page::{LINE_WIDTH, Rect, TEXT};
 use crate::text::Weight;
 use crate::thin::thin;
 use crate::{Figure, Look, palette};

@@ -12,94 +12,29 @@
 //! it, bit for bit. Angles count as a dimension of their own, so that `"5 1/s"` is not taken for an angular
 //! speed. Cost: microseconds per quantity.
 
+mod error;
 mod expression;
 mod kind;
 mod number;
 mod symbol;
 #[cfg(test)]
 mod tests;
+mod unit;
 
 use std::fmt;
 use std::str::FromStr;
 
 use serde::de::{Deserialize, Deserializer, Visitor};
 use serde::{Serialize, Serializer};
-use thiserror::Error;
 
-use self::expression::Unit;
+pub use self::error::UnitError;
 pub use self::kind::{
     ACCELERATION, ANGLE, ANGULAR_SPEED, DAMPING, DENSITY, DYNAMIC_VISCOSITY, FORCE, HERTZ_STIFFNESS, INERTIA,
     KINDS, Kind, LENGTH, MASS, MOMENT, PRESSURE_COEFFICIENT, RATE, SPEED, STIFFNESS, STRESS, TIME, VISCOSITY,
     kind_of_dimension,
 };
 use self::number::Decimal;
-
-/// Exponents of kilogram, metre, second and radian, dimensionless.
-pub type Dimension = [f64; 4];
-
-/// Exponents closer than this are equal: powers such as 10/9 are rounded, real ones differ by far more.
-const EXPONENT_TOLERANCE: f64 = 1e-9;
-
-/// Why a text is not the quantity that is needed. Every message starts with the text itself.
-#[derive(Debug, Error, PartialEq)]
-pub enum UnitError {
-    /// There is a number but nothing after it.
-    #[error("{text:?} has no unit; expected {expected}")]
-    NoUnit {
-        /// As typed.
-        text: String,
-        /// What would be right, with an example.
-        expected: String,
-    },
-    /// The text does not begin with a decimal number.
-    #[error("{text:?} does not begin with a number; expected {expected}")]
-    NoNumber {
-        /// As typed.
-        text: String,
-        /// What would be right, with an example.
-        expected: String,
-    },
-    /// `nan`, `inf`, or a number beyond the range of a double in SI.
-    #[error("{text:?} is not a finite number; expected {expected}")]
-    NotFinite {
-        /// As typed.
-        text: String,
-        /// What would be right, with an example.
-        expected: String,
-    },
-    /// A symbol that is neither a unit nor a prefix and a unit.
-    #[error("{text:?} has the unknown unit {symbol:?}{suggestion}; expected {expected}")]
-    UnknownUnit {
-        /// As typed.
-        text: String,
-        /// The symbol nobody knows.
-        symbol: String,
-        /// Empty, or ` (did you mean ...?)`.
-        suggestion: String,
-        /// What would be right, with an example.
-        expected: String,
-    },
-    /// Number or unit expression are not well formed.
-    #[error("{text:?} cannot be read: {reason}; expected {expected}")]
-    Malformed {
-        /// As typed.
-        text: String,
-        /// What is wrong with the expression.
-        reason: String,
-        /// What would be right, with an example.
-        expected: String,
-    },
-    /// A well formed quantity of another kind.
-    #[error("{text:?} is {found}; expected {expected}")]
-    WrongDimension {
-        /// As typed.
-        text: String,
-        /// The kind it is, or its base units.
-        found: String,
-        /// What would be right, with an example.
-        expected: String,
-    },
-}
+pub use self::unit::Dimension;
 
 /// A quantity of one kind: `Quantity<LENGTH>` reads `"9 mm"` and refuses `"9 N"`.
 #[derive(Clone, Debug)]
@@ -228,7 +163,7 @@ impl FromStr for AnyQuantity {
 /// Size of the named unit in SI: 1e-3 for `mm` and [`LENGTH`].
 pub fn parse_unit(text: &str, kind: &Kind) -> Result<f64, UnitError> {
     let expected = format!("a unit of {} such as \"{}\"", kind.noun(), kind.example_unit());
-    let unit = Unit::parse(text.trim()).map_err(|e| e.into_error(text, &expected))?;
+    let unit = expression::parse(text.trim()).map_err(|e| e.into_error(text, &expected))?;
     require_dimension(text, unit.dimension, kind, expected)?;
     Ok(unit.apply(&Decimal::ONE))
 }
@@ -256,7 +191,7 @@ fn parse(text: &str, expected: &str) -> Result<AnyQuantity, UnitError> {
             expected,
         });
     }
-    let unit = Unit::parse(rest.trim()).map_err(|e| e.into_error(text, expected))?;
+    let unit = expression::parse(rest.trim()).map_err(|e| e.into_error(text, expected))?;
     let si = unit.apply(&decimal);
     if !si.is_finite() {
         let (text, expected) = owned();

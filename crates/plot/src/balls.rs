@@ -2,17 +2,18 @@
 
 use figure::{Axis, Figure, Series};
 
+use super::choice::Choice;
+use super::named::Named;
 use super::quantity::{
     DEGREE, GIGAPASCAL, MEGAWATT_PER_SQUARE_METRE, MICROMETRE, MILLIMETRE_PER_SECOND, NEWTON, ONE, RPM, Unit,
     WATT, azimuth_axis, points,
 };
-use super::run::Steps;
+use super::run::{Results, Steps};
 use super::shades::{self, Shades};
-use super::{Choice, Named, Results};
 use results::table::Table;
 
 /// A quantity of both contacts of a ball.
-struct Contact {
+struct ContactColumns {
     name: &'static str,
     title: &'static str,
     axis: &'static str,
@@ -22,14 +23,14 @@ struct Contact {
     resolution: f64,
 }
 
-impl Contact {
+impl ContactColumns {
     fn y_axis(&self) -> Axis {
         self.unit.axis(self.axis).no_finer_than(self.resolution)
     }
 }
 
-const CONTACTS: [Contact; 3] = [
-    Contact {
+const CONTACTS: [ContactColumns; 3] = [
+    ContactColumns {
         name: "ball_force",
         title: "Contact force",
         axis: "contact force",
@@ -37,7 +38,7 @@ const CONTACTS: [Contact; 3] = [
         unit: NEWTON,
         resolution: 1e-6,
     },
-    Contact {
+    ContactColumns {
         name: "contact_angle",
         title: "Contact angle",
         axis: "contact angle",
@@ -45,7 +46,7 @@ const CONTACTS: [Contact; 3] = [
         unit: DEGREE,
         resolution: 1e-4,
     },
-    Contact {
+    ContactColumns {
         name: "peak_pressure",
         title: "Peak Hertz pressure",
         axis: "peak pressure",
@@ -56,8 +57,8 @@ const CONTACTS: [Contact; 3] = [
 ];
 
 /// What contacts of free balls have besides.
-const OF_FREE_BALLS: [Contact; 5] = [
-    Contact {
+const OF_FREE_BALLS: [ContactColumns; 5] = [
+    ContactColumns {
         name: "ball_slip",
         title: "Slip along the rolling direction",
         axis: "slip",
@@ -65,7 +66,7 @@ const OF_FREE_BALLS: [Contact; 5] = [
         unit: MILLIMETRE_PER_SECOND,
         resolution: 1e-6,
     },
-    Contact {
+    ContactColumns {
         name: "ball_spin",
         title: "Spin",
         axis: "spin",
@@ -73,7 +74,7 @@ const OF_FREE_BALLS: [Contact; 5] = [
         unit: RPM,
         resolution: 1e-6,
     },
-    Contact {
+    ContactColumns {
         name: "traction",
         title: "Traction along the rolling direction",
         axis: "traction",
@@ -81,7 +82,7 @@ const OF_FREE_BALLS: [Contact; 5] = [
         unit: NEWTON,
         resolution: 1e-6,
     },
-    Contact {
+    ContactColumns {
         name: "friction_power",
         title: "Friction power",
         axis: "power",
@@ -89,7 +90,7 @@ const OF_FREE_BALLS: [Contact; 5] = [
         unit: WATT,
         resolution: 1e-9,
     },
-    Contact {
+    ContactColumns {
         name: "pv",
         title: "Largest pressure times sliding speed",
         axis: "pv",
@@ -100,8 +101,8 @@ const OF_FREE_BALLS: [Contact; 5] = [
 ];
 
 /// What lubricated contacts have besides.
-const OF_FILMS: [Contact; 2] = [
-    Contact {
+const OF_FILMS: [ContactColumns; 2] = [
+    ContactColumns {
         name: "film_minimum",
         title: "Least thickness of the film",
         axis: "film",
@@ -109,7 +110,7 @@ const OF_FILMS: [Contact; 2] = [
         unit: MICROMETRE,
         resolution: 1e-9,
     },
-    Contact {
+    ContactColumns {
         name: "lambda",
         title: "Film over roughness",
         axis: "lambda",
@@ -192,7 +193,7 @@ impl Rows {
 }
 
 /// Values of a contact at the given rows; an unloaded contact has a force but no angle and no pressure.
-fn values(table: &Table, contact: &Contact, side: &str, rows: &[usize]) -> anyhow::Result<Vec<f64>> {
+fn values(table: &Table, contact: &ContactColumns, side: &str, rows: &[usize]) -> anyhow::Result<Vec<f64>> {
     let column = table.column(&format!("{side}_{}", contact.column))?;
     let force = table.column(&format!("{side}_force_n"))?;
     let value = |&row: &usize| match force[row] > 0.0 || contact.column == "force_n" {
@@ -203,7 +204,7 @@ fn values(table: &Table, contact: &Contact, side: &str, rows: &[usize]) -> anyho
 }
 
 /// One equilibrium: both contacts against the azimuth of the balls.
-fn round(table: &Table, rows: &[usize], contact: &Contact) -> anyhow::Result<Named> {
+fn round(table: &Table, rows: &[usize], contact: &ContactColumns) -> anyhow::Result<Named> {
     let title = format!("{} of the balls", contact.title);
     let mut figure = Figure::new(title, azimuth_axis(), contact.y_axis());
     for side in SIDES {
@@ -214,7 +215,12 @@ fn round(table: &Table, rows: &[usize], contact: &Contact) -> anyhow::Result<Nam
 }
 
 /// A sweep: the inner contacts against the azimuth of the balls, a curve per point.
-fn round_each(results: &Results, table: &Table, steps: &Rows, contact: &Contact) -> anyhow::Result<Named> {
+fn round_each(
+    results: &Results,
+    table: &Table,
+    steps: &Rows,
+    contact: &ContactColumns,
+) -> anyhow::Result<Named> {
     let title = format!("{} of the balls at the inner ring", contact.title);
     let mut figure = Figure::new(title, azimuth_axis(), contact.y_axis());
     let against = results.against(table)?;
@@ -252,7 +258,12 @@ fn by_azimuth(table: &Table, rows: &[usize], values: &[f64]) -> anyhow::Result<V
 }
 
 /// Mean over the balls with the band from the smallest to the largest, against time or the swept value.
-fn over_values(results: &Results, table: &Table, steps: &Rows, contact: &Contact) -> anyhow::Result<Named> {
+fn over_values(
+    results: &Results,
+    table: &Table,
+    steps: &Rows,
+    contact: &ContactColumns,
+) -> anyhow::Result<Named> {
     let Some((x_axis, x)) = results.against(table)? else {
         unreachable!("a single step has nothing to be plotted against")
     };
@@ -299,7 +310,7 @@ fn in_time(
     results: &Results,
     table: &Table,
     steps: &Rows,
-    contact: &Contact,
+    contact: &ContactColumns,
     ball: usize,
 ) -> anyhow::Result<Named> {
     let rows = steps.of_ball(ball)?;
@@ -317,7 +328,7 @@ fn in_time(
 }
 
 /// A motion: the contacts of one ball against its azimuth.
-fn way_round(table: &Table, steps: &Rows, contact: &Contact, ball: usize) -> anyhow::Result<Named> {
+fn way_round(table: &Table, steps: &Rows, contact: &ContactColumns, ball: usize) -> anyhow::Result<Named> {
     let rows = steps.of_ball(ball)?;
     let azimuth = table.column("azimuth_rad")?;
     let title = format!("{} of ball {ball} on its way round", contact.title);

@@ -3,8 +3,9 @@
 use figure::{Figure, Series};
 use results::table::Table;
 
+use super::named::Named;
 use super::quantity::{MICROMETRE, NEWTON, RPM, points};
-use super::{Named, Results};
+use super::run::Results;
 
 /// The figures of `cage.csv`; none without the table.
 pub fn figures(results: &Results) -> anyhow::Result<Vec<Named>> {

@@ -2,9 +2,9 @@
 
 use figure::{Axis, Figure, Series};
 
+use super::named::Named;
 use super::quantity::{MILLIJOULE, MILLISECOND, points};
-use super::run::Steps;
-use super::{Named, Results};
+use super::run::{Results, Steps};
 use results::table::Table;
 
 /// Sums of columns that are shown as one line.

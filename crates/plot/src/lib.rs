@@ -7,10 +7,12 @@
 mod balls;
 mod cage;
 mod campbell;
+mod choice;
 mod cut;
 mod energy;
 mod groove;
 mod modes;
+mod named;
 mod power;
 mod probes;
 mod profiles;
@@ -38,6 +40,8 @@ use results::folder::say_later;
 use results::integrity::warn_of_doubts;
 use results::whole::{make_output_folder, require_own_picture, write_picture};
 
+pub use choice::Choice;
+pub use named::Named;
 pub use quantity::Unit;
 pub use run::{Results, Steps};
 
@@ -51,35 +55,6 @@ pub struct Plot {
     out: Option<PathBuf>,
     #[command(flatten)]
     choice: Choice,
-}
-
-/// What the figures show of a run.
-#[derive(Clone, Debug, Default, Args)]
-pub struct Choice {
-    /// Ball whose way round is shown, from 0.
-    #[arg(long, default_value_t = 0)]
-    pub ball: usize,
-    /// Step whose stress is shown; default: the last with stress.
-    #[arg(long)]
-    pub step: Option<u64>,
-}
-
-/// A figure and the name of its files.
-pub struct Named {
-    /// Name without ending.
-    pub name: String,
-    /// The figure.
-    pub figure: Figure,
-}
-
-impl Named {
-    /// A figure with its name.
-    pub fn new(name: impl Into<String>, figure: Figure) -> Named {
-        Named {
-            name: name.into(),
-            figure,
-        }
-    }
 }
 
 /// The figures of a run, and why others could not be made: a sentence each.
@@ -158,16 +133,16 @@ pub fn linear_figures(dir: &Path) -> anyhow::Result<Vec<Named>> {
 }
 
 /// Figures with their names.
-fn named(found: anyhow::Result<Vec<(String, Figure)>>) -> anyhow::Result<Vec<Named>> {
-    let named = |(name, figure)| Named::new(name, figure);
-    Ok(found?.into_iter().map(named).collect())
+fn with_names(found: anyhow::Result<Vec<(String, Figure)>>) -> anyhow::Result<Vec<Named>> {
+    let with_name = |(name, figure)| Named::new(name, figure);
+    Ok(found?.into_iter().map(with_name).collect())
 }
 
 /// The figures of the run in `dir`; at least one. Where none can be made, or what was chosen is not there, that is the
 /// error.
 pub fn figures(dir: &Path, choice: &Choice) -> Result<Figures, Failure> {
     if several::is_of_several(dir) {
-        let mut drawn = named(several::figures(dir))?;
+        let mut drawn = with_names(several::figures(dir))?;
         drawn.extend(linear_figures(dir)?);
         let problems = Vec::new();
         return Ok(Figures { drawn, problems });
@@ -178,16 +153,16 @@ pub fn figures(dir: &Path, choice: &Choice) -> Result<Figures, Failure> {
         ("balls", balls::figures(&results, choice)),
         ("shaft", shaft::figures(&results)),
         ("cage", cage::figures(&results)),
-        ("power", named(power::figures(&results))),
+        ("power", with_names(power::figures(&results))),
         ("probes", probes::figures(&results)),
         ("profiles", profiles::figures(&results, choice)),
         ("energy", energy::figures(&results)),
         ("modes", modes::figures(dir)),
         ("stiffness", linear_figures(dir)),
         ("raceways", surface::figures(&results, choice)),
-        ("grooves", named(groove::figures(&results, choice.step))),
-        ("seat", named(seat::figures(dir))),
-        ("sections", named(section::figures(&results, choice.step))),
+        ("grooves", with_names(groove::figures(&results, choice.step))),
+        ("seat", with_names(seat::figures(dir))),
+        ("sections", with_names(section::figures(&results, choice.step))),
     ];
     let is_chosen = choice.ball != 0 || choice.step.is_some();
     let (mut drawn, mut problems, mut first) = (Vec::new(), Vec::new(), None);

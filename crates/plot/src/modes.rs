@@ -9,11 +9,11 @@ use figure::{Axis, Figure, Series};
 use results::table::{Rows, read_rows};
 use serde::Deserialize;
 
-use super::Named;
+use super::named::Named;
 
 /// A row of `modes.csv`, as far as it is shown.
 #[derive(Deserialize)]
-struct Row {
+struct ModeRow {
     body: String,
     mode: f64,
     frequency_hz: f64,
@@ -27,9 +27,9 @@ pub fn figures(dir: &Path) -> anyhow::Result<Vec<Named>> {
         return Ok(Vec::new());
     };
     let header = StringRecord::from(names);
-    let mut bodies: BTreeMap<String, Vec<Row>> = BTreeMap::new();
+    let mut bodies: BTreeMap<String, Vec<ModeRow>> = BTreeMap::new();
     for row in &rows {
-        let row: Row = row
+        let row: ModeRow = row
             .deserialize(Some(&header))
             .with_context(|| format!("{} is damaged", path.display()))?;
         bodies.entry(row.body.clone()).or_default().push(row);
@@ -40,9 +40,10 @@ pub fn figures(dir: &Path) -> anyhow::Result<Vec<Named>> {
     );
     let mut figure = Figure::new("Natural frequencies", axes.0, axes.1);
     for (body, rows) in bodies {
-        let place = |row: &Row| [row.mode, 1e-3 * row.frequency_hz];
-        let error =
-            |row: &Row| [row.frequency_hz - row.bound_hz, row.frequency_hz + row.bound_hz].map(|f| 1e-3 * f);
+        let place = |row: &ModeRow| [row.mode, 1e-3 * row.frequency_hz];
+        let error = |row: &ModeRow| {
+            [row.frequency_hz - row.bound_hz, row.frequency_hz + row.bound_hz].map(|f| 1e-3 * f)
+        };
         let series = Series::marks(body, rows.iter().map(place).collect());
         figure = figure.series(series.errors(rows.iter().map(error).collect()));
     }

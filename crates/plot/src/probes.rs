@@ -4,9 +4,9 @@ use std::collections::BTreeMap;
 
 use figure::{Figure, Series};
 
+use super::named::Named;
 use super::quantity::{self, points};
-use super::run::Steps;
-use super::{Named, Results};
+use super::run::{Results, Steps};
 
 /// What a column of a probe shows, by the words in its name: the words that end the name of the probe, and the figure.
 const KINDS: [(&str, &str); 12] = [

@@ -6,10 +6,11 @@ use anyhow::anyhow;
 use figure::{Axis, Figure, Series};
 use results::table::{Rows, read_rows};
 
+use super::choice::Choice;
+use super::named::Named;
 use super::quantity::{self, DEGREE, MEGAPASCAL, MICROMETRE, Unit, points};
-use super::run::Steps;
+use super::run::{Results, Steps};
 use super::shades::{self, Shades};
-use super::{Choice, Named, Results};
 
 /// Table of all profiles.
 const FILE: &str = "profiles.csv";
@@ -30,7 +31,7 @@ const FIGURES: [(&str, &str, &[&str]); 2] = [
 ];
 
 /// Rows of one profile at one step, by the names of the columns.
-type Columns = BTreeMap<String, Vec<f64>>;
+type ProfileColumns = BTreeMap<String, Vec<f64>>;
 
 /// The figures of `profiles.csv` at the chosen step, else at the last, and then of a sweep over all points.
 pub fn figures(results: &Results, choice: &Choice) -> anyhow::Result<Vec<Named>> {
@@ -49,7 +50,7 @@ pub fn figures(results: &Results, choice: &Choice) -> anyhow::Result<Vec<Named>>
         })
     };
     let (step, profile) = (place("step")?, place("profile")?);
-    let mut profiles: BTreeMap<String, BTreeMap<u64, Columns>> = BTreeMap::new();
+    let mut profiles: BTreeMap<String, BTreeMap<u64, ProfileColumns>> = BTreeMap::new();
     for row in &rows {
         let Ok(number) = row[step].parse() else { continue };
         let steps = profiles.entry(row[profile].to_string()).or_default();
@@ -76,7 +77,11 @@ pub fn figures(results: &Results, choice: &Choice) -> anyhow::Result<Vec<Named>>
 }
 
 /// Von Mises stress along a profile, a curve per point of a sweep.
-fn over_sweep(results: &Results, profile: &str, steps: &BTreeMap<u64, Columns>) -> anyhow::Result<Named> {
+fn over_sweep(
+    results: &Results,
+    profile: &str,
+    steps: &BTreeMap<u64, ProfileColumns>,
+) -> anyhow::Result<Named> {
     let (axis, _) = along(steps.values().next().expect("a profile has rows"));
     let stress = MEGAPASCAL.axis("von Mises stress").including(0.0);
     let mut figure = Figure::new(format!("Profile {profile}: von Mises stress"), axis, stress);
@@ -92,7 +97,7 @@ fn over_sweep(results: &Results, profile: &str, steps: &BTreeMap<u64, Columns>) 
 }
 
 /// Both figures of a profile, columns in the order of the table.
-fn of_profile(profile: &str, columns: &Columns, names: &[String], step: u64) -> Vec<Named> {
+fn of_profile(profile: &str, columns: &ProfileColumns, names: &[String], step: u64) -> Vec<Named> {
     let (axis, x) = along(columns);
     let figure = |(ending, what, starts): &(&str, &str, &[&str])| {
         let title = format!("Profile {profile}, step {step}: {what}");
@@ -108,7 +113,7 @@ fn of_profile(profile: &str, columns: &Columns, names: &[String], step: u64) -> 
 }
 
 /// The coordinate that the line runs along: the first that is not the same at all its points.
-fn along(columns: &Columns) -> (Axis, Vec<f64>) {
+fn along(columns: &ProfileColumns) -> (Axis, Vec<f64>) {
     let varies = |x: &[f64]| x.iter().any(|v| *v != x[0]);
     let chosen = COORDINATES
         .iter()

@@ -18,7 +18,7 @@ const ON_TORUS: f64 = 1e-4;
 
 /// A node of a raceway with its stress.
 #[derive(Clone, Copy, Debug)]
-pub struct Node {
+pub struct RacewayNode {
     /// Azimuth in space, deg, 0 to 360.
     pub azimuth: f64,
     /// Groove angle, deg, + as contact angles are.
@@ -80,7 +80,7 @@ fn groove(geometry: &BearingGeometry, side: Side) -> Groove {
 }
 
 /// The nodes on a groove with their stress; none if the step has no nodal stress.
-pub fn nodes(grid: &Grid, record: &StepRecord, groove: &Groove) -> Vec<Node> {
+pub fn nodes(grid: &Grid, record: &StepRecord, groove: &Groove) -> Vec<RacewayNode> {
     let Some(von_mises) = &record.points.von_mises else {
         return Vec::new();
     };
@@ -91,13 +91,13 @@ pub fn nodes(grid: &Grid, record: &StepRecord, groove: &Groove) -> Vec<Node> {
     let mut on_ring = places.clone().filter(|(x, _)| on_torus(**x, groove));
     let known = on_ring.find(|(_, u)| !u[0].is_nan());
     let turn = known.map_or(0.0, |(x, u)| moved(x, u) - own(x));
-    let nodes: Vec<Node> = places
+    let nodes: Vec<RacewayNode> = places
         .zip(von_mises)
         .filter(|((x, _), _)| on_torus(**x, groove))
         .map(|((x, u), &von_mises)| {
             let [_, angle] = groove.coordinates(*x);
             let azimuth = if u[0].is_nan() { own(x) + turn } else { moved(x, u) };
-            Node {
+            RacewayNode {
                 azimuth: azimuth.to_degrees().rem_euclid(360.0),
                 groove_angle: angle.to_degrees(),
                 von_mises,
@@ -120,8 +120,8 @@ fn on_torus(x: [f64; 3], groove: &Groove) -> bool {
 
 /// Nodes by their groove angle in rows, each row in the order of its azimuths; the raceways of revolved meshes are such
 /// grids, a free mesh gives rows of few nodes.
-pub fn rows(nodes: &[Node]) -> BTreeMap<i64, Vec<Node>> {
-    let mut rows: BTreeMap<i64, Vec<Node>> = BTreeMap::new();
+pub fn rows(nodes: &[RacewayNode]) -> BTreeMap<i64, Vec<RacewayNode>> {
+    let mut rows: BTreeMap<i64, Vec<RacewayNode>> = BTreeMap::new();
     for node in nodes {
         rows.entry((1e3 * node.groove_angle).round() as i64)
             .or_default()
@@ -134,7 +134,7 @@ pub fn rows(nodes: &[Node]) -> BTreeMap<i64, Vec<Node>> {
 }
 
 /// Stress at an azimuth from the nodes of a row, linear between neighbours.
-pub fn at_azimuth(row: &[Node], azimuth: f64) -> f64 {
+pub fn at_azimuth(row: &[RacewayNode], azimuth: f64) -> f64 {
     let azimuth = azimuth.rem_euclid(360.0);
     let after = row.partition_point(|node| node.azimuth <= azimuth);
     let (before, next) = (row[(after + row.len() - 1) % row.len()], row[after % row.len()]);

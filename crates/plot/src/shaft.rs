@@ -2,9 +2,9 @@
 
 use figure::{Figure, Series};
 
+use super::named::Named;
 use super::quantity::{MICROMETRE, MILLIRADIAN, NEWTON_METRE, RPM, Unit, WATT, points};
-use super::run::Steps;
-use super::{Named, Results};
+use super::run::{Results, Steps};
 
 /// The figures of `shaft.csv`; none for a single step.
 pub fn figures(results: &Results) -> anyhow::Result<Vec<Named>> {

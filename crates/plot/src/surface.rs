@@ -10,10 +10,12 @@ use checkpoint::{read_any_step, read_mesh};
 use contact::Groove;
 use figure::{Axis, Figure, Look, Series, Surface};
 
+use super::choice::Choice;
+use super::named::Named;
 use super::quantity::{DEGREE, MEGAPASCAL, azimuth_axis};
-use super::raceways::{self, Node};
+use super::raceways::{self, RacewayNode};
+use super::run::Results;
 use super::stress_step::step_with_stress;
-use super::{Choice, Named, Results};
 use results::table::Table;
 
 /// Columns and rows of the picture of a raceway.
@@ -47,7 +49,7 @@ pub fn figures(results: &Results, choice: &Choice) -> anyhow::Result<Vec<Named>>
 
 /// The picture of a raceway; `largest` is the end of its scale, Pa.
 fn unrolled(
-    nodes: &[Node],
+    nodes: &[RacewayNode],
     largest: f64,
     groove: &Groove,
     (balls, step): (&Table, u64),
@@ -65,7 +67,7 @@ fn unrolled(
             .collect()
     };
     let (x_edges, y_edges) = (edges(n_x, 0.0, 360.0), edges(n_y, low, high));
-    let rows: Vec<(f64, Vec<Node>)> = raceways::rows(nodes)
+    let rows: Vec<(f64, Vec<RacewayNode>)> = raceways::rows(nodes)
         .into_iter()
         .map(|(k, row)| (1e-3 * k as f64, row))
         .collect();
@@ -97,7 +99,7 @@ fn unrolled(
 }
 
 /// Bilinear between rows of groove angle and, in each, between neighbours in azimuth.
-fn interpolate(rows: &[(f64, Vec<Node>)], azimuth: f64, angle: f64) -> f64 {
+fn interpolate(rows: &[(f64, Vec<RacewayNode>)], azimuth: f64, angle: f64) -> f64 {
     let after = rows
         .partition_point(|(a, _)| *a <= angle)
         .clamp(1, rows.len() - 1);

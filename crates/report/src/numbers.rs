@@ -5,7 +5,7 @@ use plot::{Results, Steps, Unit, quantity};
 use results::table::Table;
 
 /// A row of the table of key numbers, in the unit shown.
-pub struct Number {
+pub struct PageNumber {
     /// What it is.
     pub name: String,
     /// Its unit.
@@ -54,7 +54,7 @@ const SHAFT: [(&str, &str, Unit); 5] = [
 ];
 
 /// The key numbers, balls first.
-pub fn numbers(results: &Results) -> anyhow::Result<Vec<Number>> {
+pub fn numbers(results: &Results) -> anyhow::Result<Vec<PageNumber>> {
     let mut numbers = Vec::new();
     if let Some(table) = &results.balls {
         for (name, column, unit) in BALLS {
@@ -74,17 +74,17 @@ pub fn numbers(results: &Results) -> anyhow::Result<Vec<Number>> {
 }
 
 /// Over all balls and steps; angles only where there is a force.
-fn of_balls(table: &Table, name: &str, column: &str, unit: Unit) -> anyhow::Result<Option<Number>> {
+fn of_balls(table: &Table, name: &str, column: &str, unit: Unit) -> anyhow::Result<Option<PageNumber>> {
     let side = column.split('_').next().unwrap_or(column);
     let force = table.column(&format!("{side}_force_n"))?;
     let values = table.column(column)?.iter().zip(force);
     let loaded = values.filter(|(_, f)| !column.contains("angle") || **f > 0.0);
     let number = statistics(name, unit, loaded.map(|(value, _)| *value));
-    Ok(number.map(|number| Number { rms: None, ..number }))
+    Ok(number.map(|number| PageNumber { rms: None, ..number }))
 }
 
 /// None without a value.
-fn statistics(name: &str, unit: Unit, values: impl Iterator<Item = f64> + Clone) -> Option<Number> {
+fn statistics(name: &str, unit: Unit, values: impl Iterator<Item = f64> + Clone) -> Option<PageNumber> {
     let values = values.map(|v| v * unit.factor);
     let n = values.clone().count();
     if n == 0 {
@@ -92,7 +92,7 @@ fn statistics(name: &str, unit: Unit, values: impl Iterator<Item = f64> + Clone)
     }
     let mean = values.clone().sum::<f64>() / n as f64;
     let square = values.clone().map(|v| (v - mean) * (v - mean)).sum::<f64>() / n as f64;
-    Some(Number {
+    Some(PageNumber {
         name: name.into(),
         unit: unit.sign,
         smallest: values.clone().fold(f64::INFINITY, f64::min),

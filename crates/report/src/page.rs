@@ -6,7 +6,7 @@ use serde_json::Value;
 
 use super::bearing;
 use super::html::{Cells, digits, row, table};
-use super::numbers::Number;
+use super::numbers::PageNumber;
 use super::pictures::Picture;
 use super::source::Source;
 
@@ -19,7 +19,7 @@ const SCRIPT: &str = include_str!("figures.js");
 const ROUND_OFF: f64 = 1e-9;
 
 /// The HTML of a run of one bearing.
-pub fn page(source: &Source, numbers: &[Number], pictures: &[Picture]) -> String {
+pub fn page(source: &Source, numbers: &[PageNumber], pictures: &[Picture]) -> String {
     let summary = &source.summary;
     let title = text(summary, "title");
     let parts = [
@@ -233,7 +233,7 @@ fn modes(summary: &Value) -> String {
     format!("<h2>Natural frequencies</h2>\n{}", tables.join("\n"))
 }
 
-pub fn key_numbers(numbers: &[Number], summary: &Value) -> String {
+pub fn key_numbers(numbers: &[PageNumber], summary: &Value) -> String {
     if numbers.is_empty() && summary.get("modes").is_some() {
         return "<h2>Key numbers</h2>\n<p>Those of the modes are above.</p>".into();
     }

@@ -11,7 +11,7 @@ use results::several::SCENE_TEXT;
 use serde_json::Value;
 
 use super::html::{Cells, digits, row, table};
-use super::numbers::{self, Number};
+use super::numbers::{self, PageNumber};
 use super::page::{
     cost, document, energy, figures, key_numbers, list, meshes, program, remarks, scene, text, warnings,
 };
@@ -23,7 +23,7 @@ use super::{bearing, pictures};
 struct Part {
     name: String,
     source: Source,
-    numbers: Vec<Number>,
+    numbers: Vec<PageNumber>,
     pictures: Vec<Picture>,
 }
 

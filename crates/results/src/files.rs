@@ -6,7 +6,6 @@ use std::path::Path;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use anyhow::anyhow;
 use checkpoint::{
     BackgroundOutput, CheckpointError, Compression, ErrorBound, FolderLock, Made, MeshFile, Output,
     Precision, Stamps, StepRecord, Storage,
@@ -31,9 +30,7 @@ use super::ring_stress::{Gathered, RingStress};
 use super::shown::Shown;
 use super::snapshot::Snapshot;
 use super::state_arrays::Arrays;
-use super::summary::{
-    Costs, DISK, DISK_WAIT, GATHER, NEAR_FIELD, OUTPUT, READ, REDUCTION, STRESS, SUMMARY_FILE, TOTAL,
-};
+use super::summary::{Costs, DISK, DISK_WAIT, GATHER, NEAR_FIELD, OUTPUT, READ, REDUCTION, STRESS, TOTAL};
 use super::tables::{OwnColumns, Tables};
 use crate::failure::Failure;
 use crate::survey::Survey;
@@ -170,12 +167,7 @@ impl Files {
         say_folder(&dir);
         let (mut output, damaged, mut superseded) = (opened.output, opened.damaged, opened.superseded);
         output.describe(texts)?;
-        if let Some(fault) = opened.mesh_restored {
-            print::note(format_args!(
-                "note: mesh.hdf was {fault} in {} and is written again",
-                dir.display()
-            ));
-        }
+        folder::note_restored(opened.mesh_restored, &dir);
         let mut aside = || match &superseded {
             Some(folder) => Ok(folder.clone()),
             None => Ok(superseded
@@ -183,22 +175,9 @@ impl Files {
                 .clone()),
         };
         let tables = Tables::resume(&cuts, first, &columns, &mut aside)?;
-        if let Some(folder) = superseded {
-            print::note(format_args!(
-                "what the run wrote after step {last} is kept in {}",
-                folder.display()
-            ));
-        }
+        folder::note_superseded(superseded.as_deref(), last);
         warn_of_damage(&damaged);
-        // What they say is not true any more until the run ends again, or gets to its next state.
-        for name in [SUMMARY_FILE, REDUCTION_FILE] {
-            match std::fs::remove_file(dir.join(name)) {
-                Err(error) if error.kind() != std::io::ErrorKind::NotFound => {
-                    return Err(anyhow!("cannot remove the old {name}: {error}").into());
-                }
-                _ => {}
-            }
-        }
+        folder::remove_outdated(&dir)?;
         if let Some(table) = reduction.as_ref().and_then(StressReduction::table) {
             output.write_table(REDUCTION_FILE, &table)?;
         }

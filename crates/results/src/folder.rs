@@ -197,6 +197,40 @@ fn require_no_results(dir: &Path) -> Result<(), Failure> {
     }
 }
 
+/// Removes the files of the end of a run. What they say is not true any more until it ends again, or gets to its next
+/// state.
+pub(crate) fn remove_outdated(dir: &Path) -> anyhow::Result<()> {
+    for name in [SUMMARY_FILE, REDUCTION_FILE] {
+        match std::fs::remove_file(dir.join(name)) {
+            Err(error) if error.kind() != std::io::ErrorKind::NotFound => {
+                return Err(anyhow!("cannot remove the old {name}: {error}"));
+            }
+            _ => {}
+        }
+    }
+    Ok(())
+}
+
+/// Says what the mesh file was before it was written again, if it was.
+pub(crate) fn note_restored(fault: Option<&str>, dir: &Path) {
+    if let Some(fault) = fault {
+        print::note(format_args!(
+            "note: mesh.hdf was {fault} in {} and is written again",
+            dir.display()
+        ));
+    }
+}
+
+/// Names the folder of what a run wrote after the step that it goes on from, if it wrote any.
+pub(crate) fn note_superseded(folder: Option<&Path>, step: u64) {
+    if let Some(folder) = folder {
+        print::note(format_args!(
+            "what the run wrote after step {step} is kept in {}",
+            folder.display()
+        ));
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -9,7 +9,7 @@ pub mod bodies;
 pub mod body_stress;
 pub mod campbell;
 pub mod console;
-mod cut;
+pub mod cut;
 pub mod disk;
 pub mod export;
 mod facet_search;

@@ -121,7 +121,8 @@ impl RingStress {
     pub fn gather(&self, shown: &Shown<'_>, kept: KeptFields) -> (Gathered, Laps) {
         let (mut gathered, mut laps) = (Gathered::default(), Laps::default());
         let model = shown.model();
-        if !matches!(model.backend, Backend::Sector(sectors) if sectors.comm.size() > 1) {
+        let sectors = model.backend.sectors();
+        if sectors.is_none_or(|sectors| sectors.comm.size() == 1) {
             return (gathered, laps);
         }
         for side in Side::BOTH {
@@ -281,8 +282,8 @@ impl Recovery {
             kind == StressOutput::IntegrationPoints,
             Communicator::world().is_root(),
         );
-        let source = match backend {
-            Backend::Sector(sectors) => {
+        let source = match backend.sectors() {
+            Some(sectors) => {
                 let places = if at_points {
                     StressPlaces::IntegrationPoints
                 } else {

@@ -197,25 +197,7 @@ impl Summary {
     /// Summary of a run.
     pub fn new(scene: &Scene, model: &Model, findings: Findings, costs: &Costs) -> Summary {
         let last = &findings.last;
-        let (analysis, sweep) = match &scene.analysis {
-            Analysis::Static => ("static", None),
-            Analysis::QuasiStatic(_) => ("quasi_static", None),
-            Analysis::Dynamic(_) => ("dynamic", None),
-            Analysis::Modes(_) => ("modes", None),
-            Analysis::Sweep(sweep) => {
-                let rows = findings.points.iter().map(|(value, s)| SweepRow {
-                    value: *value,
-                    shaft: ShaftSummary::new(s),
-                    balls: balls(s),
-                });
-                let summary = SweepSummary {
-                    key: sweep.key.clone(),
-                    column: sweep.column.clone(),
-                    points: rows.collect(),
-                };
-                ("sweep", Some(summary))
-            }
-        };
+        let (analysis, sweep) = analysis_of(scene, &findings);
         let film = thinnest(scene, model, last);
         let mut warnings = findings.warnings;
         warnings.extend(film.iter().filter_map(|(side, film)| film.warning(side)));
@@ -402,4 +384,27 @@ pub fn peak_memory() -> u64 {
         .and_then(|l| l.split_whitespace().next())
         .and_then(|n| n.parse::<u64>().ok());
     kilobytes.unwrap_or(0) * 1024
+}
+
+/// Name of the analysis, and the points of a sweep.
+fn analysis_of(scene: &Scene, findings: &Findings) -> (&'static str, Option<SweepSummary>) {
+    match &scene.analysis {
+        Analysis::Static => ("static", None),
+        Analysis::QuasiStatic(_) => ("quasi_static", None),
+        Analysis::Dynamic(_) => ("dynamic", None),
+        Analysis::Modes(_) => ("modes", None),
+        Analysis::Sweep(sweep) => {
+            let rows = findings.points.iter().map(|(value, s)| SweepRow {
+                value: *value,
+                shaft: ShaftSummary::new(s),
+                balls: balls(s),
+            });
+            let summary = SweepSummary {
+                key: sweep.key.clone(),
+                column: sweep.column.clone(),
+                points: rows.collect(),
+            };
+            ("sweep", Some(summary))
+        }
+    }
 }

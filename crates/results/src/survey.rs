@@ -11,7 +11,7 @@ use anyhow::anyhow;
 use checkpoint::MeshFile;
 use comm::{Communicator, print};
 use contact::Side;
-use dynamics::{Backend, Model, RingModel, Sectors};
+use dynamics::{Model, RingModel, Sectors};
 use scene::{Scene, build_model, difference, doubts, material, model_with_rings, ring_of};
 
 use crate::about::identity;
@@ -54,11 +54,11 @@ pub fn build_surveyed(
 ) -> Result<(Model, Survey), Failure> {
     let comm = Communicator::world();
     require_same_scene(&scene.text)?;
-    if comm.size() > 1 && point.solver.backend == scene::Backend::Sector {
+    if comm.size() > 1 && point.solver.backend.divides_rings() {
         return build_shared(point, scene, dir, test);
     }
     let (mut model, survey) = whole(point, scene, test)?;
-    if let Backend::Sector(sectors) = model.backend {
+    if let Some(sectors) = model.backend.sectors() {
         for side in Side::BOTH {
             let divided = take(&mut model, side).map(|ring| ring.divide(side.name(), sectors));
             model.rings[side.index()] = divided.transpose().map_err(Failure::solving)?.map(Arc::new);

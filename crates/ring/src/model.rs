@@ -154,6 +154,14 @@ pub enum Backend {
 }
 
 impl Backend {
+    /// The sectors of every ring, where rings are cut into some.
+    pub fn sectors(self) -> Option<Sectors> {
+        match self {
+            Backend::Sector(sectors) => Some(sectors),
+            Backend::Auto | Backend::Cyclic | Backend::Sparse => None,
+        }
+    }
+
     /// The ranks that share a ring: those of the run share the harmonics of a periodic one.
     pub fn comm(self) -> Communicator {
         match self {

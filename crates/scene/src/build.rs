@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use comm::Communicator;
+use contact::hertz::Elastic;
 use contact::{BearingGeometry, Groove, HertzContact, LeastSize, Side, SphereCompliance};
 use dynamics::RACEWAY_GROUP;
 use dynamics::effects::Setting;
@@ -72,17 +73,7 @@ pub fn model_with_rings(scene: &Scene, rings: [Option<Arc<RingModel>>; 2]) -> Re
         material(&scene.materials.rings)?,
         material(&scene.materials.balls)?,
     );
-    let given = [scene.contact.inner_stiffness, scene.contact.outer_stiffness];
-    let hertz = Side::BOTH.map(|side| {
-        let exact = HertzContact::new(&geometry, side, elastic(&ball_steel), elastic(&ring_steel));
-        given[side.index()].map_or(exact, |k| exact.with_stiffness(k))
-    });
-    let sphere = match scene.contact.ball {
-        tables::BallElasticity::Sphere => {
-            SphereCompliance::new(elastic(&ball_steel), geometry.ball_diameter, &hertz)
-        }
-        tables::BallElasticity::HalfSpace => SphereCompliance::default(),
-    };
+    let (hertz, sphere) = ball_elasticity(scene, &geometry, [&ball_steel, &ring_steel].map(elastic));
     let effects = scene.effects.loads(Setting {
         speeds: &speeds(scene),
         slip: scene.effects.slip(),
@@ -92,12 +83,7 @@ pub fn model_with_rings(scene: &Scene, rings: [Option<Arc<RingModel>>; 2]) -> Re
     })?;
     let mounting = mounting(scene, &geometry, &rings)?;
     let (shaft, ring) = (&scene.shaft, scene.inner.inertia);
-    let is_quadratic = |ring: &RingModel| ring.mesh.kind.n_nodes() > ring.mesh.kind.n_corners();
-    let least_length = match rings.iter().flatten().any(|ring| is_quadratic(ring)) {
-        true => LEAST_QUADRATIC_PATCH * geometry.ball_diameter,
-        false => 0.0,
-    };
-    let patch_length = scene.contact.patch_length.unwrap_or(least_length);
+    let contact = contact_settings(scene, &geometry, &rings);
     let dofs = [shaft.x, shaft.y, shaft.z, shaft.tilt_x, shaft.tilt_y].map(|motion| match motion {
         tables::Motion::Free => ShaftDof::Free,
         tables::Motion::Locked => ShaftDof::Prescribed(0.0),
@@ -123,17 +109,7 @@ pub fn model_with_rings(scene: &Scene, rings: [Option<Arc<RingModel>>; 2]) -> Re
         },
         load_point: shaft.load_point,
         cage: scene.cage.clone(),
-        contact: ContactSettings {
-            mode: match scene.contact.mode {
-                tables::ContactMode::Patch => ContactMode::Patch,
-                tables::ContactMode::Facet => ContactMode::Facet,
-                tables::ContactMode::Rigid => ContactMode::Rigid,
-            },
-            least_patch: LeastSize {
-                spacings: scene.contact.patch_elements,
-                rolling: patch_length,
-            },
-        },
+        contact,
         effects,
         backend: backend(scene),
         tolerances: Tolerances {
@@ -144,6 +120,49 @@ pub fn model_with_rings(scene: &Scene, rings: [Option<Arc<RingModel>>; 2]) -> Re
     let half_widths = half_widths(scene, &mut model);
     model.surfaces = surfaces(scene, &model.geometry, &model.hertz, &model.rings, half_widths)?;
     Ok(model)
+}
+
+/// Laws of contacts and of the balls between them, of balls and rings of these elasticities.
+fn ball_elasticity(
+    scene: &Scene,
+    geometry: &BearingGeometry,
+    [ball, ring]: [Elastic; 2],
+) -> ([HertzContact; 2], SphereCompliance) {
+    let given = [scene.contact.inner_stiffness, scene.contact.outer_stiffness];
+    let hertz = Side::BOTH.map(|side| {
+        let exact = HertzContact::new(geometry, side, ball, ring);
+        given[side.index()].map_or(exact, |k| exact.with_stiffness(k))
+    });
+    let sphere = match scene.contact.ball {
+        tables::BallElasticity::Sphere => SphereCompliance::new(ball, geometry.ball_diameter, &hertz),
+        tables::BallElasticity::HalfSpace => SphereCompliance::default(),
+    };
+    (hertz, sphere)
+}
+
+/// How contacts press on rings.
+fn contact_settings(
+    scene: &Scene,
+    geometry: &BearingGeometry,
+    rings: &[Option<Arc<RingModel>>; 2],
+) -> ContactSettings {
+    let is_quadratic = |ring: &RingModel| ring.mesh.kind.n_nodes() > ring.mesh.kind.n_corners();
+    let least_length = match rings.iter().flatten().any(|ring| is_quadratic(ring)) {
+        true => LEAST_QUADRATIC_PATCH * geometry.ball_diameter,
+        false => 0.0,
+    };
+    let patch_length = scene.contact.patch_length.unwrap_or(least_length);
+    ContactSettings {
+        mode: match scene.contact.mode {
+            tables::ContactMode::Patch => ContactMode::Patch,
+            tables::ContactMode::Facet => ContactMode::Facet,
+            tables::ContactMode::Rigid => ContactMode::Rigid,
+        },
+        least_patch: LeastSize {
+            spacings: scene.contact.patch_elements,
+            rolling: patch_length,
+        },
+    }
 }
 
 /// What fits and temperatures do to the bearing.

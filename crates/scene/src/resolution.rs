@@ -184,29 +184,7 @@ fn judge_schedule(key: &str, schedule: &Schedule, steps: &TimeSteps, said: &mut 
                 steps.judge_rate(&what, frequency.abs(), said);
             }
         }
-        Schedule::Impact { start, duration } => {
-            if *start >= end {
-                warn(format!(
-                    "the impact begins at {}, the run ends at {}",
-                    time(*start),
-                    time(end)
-                ));
-            } else if *duration < STEPS_PER_PULSE * steps.step {
-                warn(format!(
-                    "an impact of {} is {:.2} steps of {}; expected {STEPS_PER_PULSE} or more: {}.step of {} or \
-                     less; {}",
-                    time(*duration),
-                    duration / steps.step,
-                    time(steps.step),
-                    steps.table,
-                    time(below(duration / STEPS_PER_PULSE)),
-                    match steps.table {
-                        "dynamic" => "its impulse is whole, its shape is not there",
-                        _ => "its peak may lie between two instants",
-                    }
-                ));
-            }
-        }
+        Schedule::Impact { start, duration } => warn_of_impact((*start, *duration), steps, &mut warn),
         Schedule::Ramp {
             from,
             to,
@@ -237,6 +215,31 @@ fn judge_schedule(key: &str, schedule: &Schedule, steps: &TimeSteps, said: &mut 
             }
         }
         Schedule::Table { times, .. } => warn_of_table(times, steps, &mut warn),
+    }
+}
+
+/// An impact that the run does not reach, or that is too short for its steps.
+fn warn_of_impact((start, duration): (f64, f64), steps: &TimeSteps, warn: &mut impl FnMut(String)) {
+    if start >= steps.duration {
+        warn(format!(
+            "the impact begins at {}, the run ends at {}",
+            time(start),
+            time(steps.duration)
+        ));
+    } else if duration < STEPS_PER_PULSE * steps.step {
+        warn(format!(
+            "an impact of {} is {:.2} steps of {}; expected {STEPS_PER_PULSE} or more: {}.step of {} or \
+             less; {}",
+            time(duration),
+            duration / steps.step,
+            time(steps.step),
+            steps.table,
+            time(below(duration / STEPS_PER_PULSE)),
+            match steps.table {
+                "dynamic" => "its impulse is whole, its shape is not there",
+                _ => "its peak may lie between two instants",
+            }
+        ));
     }
 }
 

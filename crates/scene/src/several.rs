@@ -140,7 +140,7 @@ pub fn loads(
         rings: &none,
         lubricant: None,
     })?;
-    let mut of_effects = Loads::none(model);
+    let mut of_effects = Loads::none(model.geometry.n_balls);
     for effect in found.iter().filter(|effect| ON_SHAFT.contains(&effect.name())) {
         // The load point of a bearing's model is its origin: forces have no lever.
         let now = Now {

@@ -14,7 +14,7 @@ use std::f64::consts::PI;
 
 use input::{ANGLE, FORCE, LENGTH, Quantity, ten_digits};
 
-use crate::designations::{DESIGNATIONS, clearance_of, listed};
+use crate::designations::{DESIGNATIONS, Listed, clearance_of, listed};
 
 /// What is known of the bearing.
 #[derive(Clone, Debug, Default)]
@@ -120,24 +120,7 @@ fn find(wanted: &StarterRequest) -> Result<Sketch, String> {
              0 and a bore smaller than the outside diameter"
         ));
     }
-    let degrees = wanted
-        .contact_angle
-        .as_ref()
-        .map(|angle| ten_digits(angle.si().to_degrees()));
-    let clearance = mm(&wanted.radial_clearance);
-    let of_list = listed.as_ref().and_then(|l| l.degrees);
-    let (kind, angle_note) = match (degrees, clearance, &listed) {
-        (Some(degrees), _, _) => (BearingKind::Angular(degrees), "given".into()),
-        (None, Some(clearance), _) => (BearingKind::Deep(clearance), "given".into()),
-        (None, None, None) => return Err(format!("--contact-angle is missing; {DESIGNATIONS}")),
-        (None, None, Some(listed)) => match of_list {
-            Some(degrees) => (BearingKind::Angular(degrees), listed.angle_note.clone()),
-            None => (
-                BearingKind::Deep(clearance_of(bore, listed.group)),
-                format!("the middle of group {}, ISO 5753-1", listed.group),
-            ),
-        },
-    };
+    let (kind, angle_note) = kind_of(wanted, listed.as_ref(), bore)?;
     let ball = SketchNumber::new(
         mm(&wanted.ball_diameter),
         0.3 * (outside - bore),
@@ -166,6 +149,32 @@ fn find(wanted: &StarterRequest) -> Result<Sketch, String> {
         pitch,
         kind,
         angle_note,
+    })
+}
+
+/// Whether a bearing has a contact angle or a clearance, and where that comes from; `bore` in mm.
+fn kind_of(
+    wanted: &StarterRequest,
+    listed: Option<&Listed>,
+    bore: f64,
+) -> Result<(BearingKind, String), String> {
+    let degrees = wanted
+        .contact_angle
+        .as_ref()
+        .map(|angle| ten_digits(angle.si().to_degrees()));
+    let clearance = wanted.radial_clearance.as_ref().map(|c| ten_digits(1e3 * c.si()));
+    let of_list = listed.and_then(|l| l.degrees);
+    Ok(match (degrees, clearance, listed) {
+        (Some(degrees), _, _) => (BearingKind::Angular(degrees), "given".into()),
+        (None, Some(clearance), _) => (BearingKind::Deep(clearance), "given".into()),
+        (None, None, None) => return Err(format!("--contact-angle is missing; {DESIGNATIONS}")),
+        (None, None, Some(listed)) => match of_list {
+            Some(degrees) => (BearingKind::Angular(degrees), listed.angle_note.clone()),
+            None => (
+                BearingKind::Deep(clearance_of(bore, listed.group)),
+                format!("the middle of group {}, ISO 5753-1", listed.group),
+            ),
+        },
     })
 }
 

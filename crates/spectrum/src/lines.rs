@@ -98,8 +98,21 @@ pub fn lines(dir: &Path, scene: &Scene, (from, to): (f64, f64)) -> anyhow::Resul
         })
     };
     let [inner, outer] = Side::BOTH.map(of_ring);
-    let n = scene.bearing.balls as f64;
     let spin = spin(&table, scene, (from, to))?;
+    let all = lines_of(scene, (inner, outer), cage, spin);
+    let found: Vec<Line> = all.into_iter().filter(|line| line.frequency > 0.0).collect();
+    if found.is_empty() {
+        return Err(anyhow!(
+            "{} does not turn: there are no lines to mark",
+            dir.display()
+        ));
+    }
+    Ok(found)
+}
+
+/// The lines of a bearing whose rings, cage and balls turn at these speeds, Hz.
+fn lines_of(scene: &Scene, (inner, outer): (f64, f64), cage: f64, spin: f64) -> [Line; 5] {
+    let n = scene.bearing.balls as f64;
     let line = |name, frequency: f64, harmonics, sidebands: f64| Line {
         name,
         frequency: frequency.abs(),
@@ -112,21 +125,13 @@ pub fn lines(dir: &Path, scene: &Scene, (from, to): (f64, f64)) -> anyhow::Resul
     };
     // Balls that are spheres have no pulses.
     let of_ball = if scene.profiles.balls.is_empty() { 1 } else { 3 };
-    let all = [
+    [
         line("BPFO", n * (cage - outer), 3, outer - load),
         line("BPFI", n * (inner - cage), 3, inner),
         line("2 BSF", 2.0 * spin, of_ball, cage),
         line("cage", cage, 1, 0.0),
         line("shaft", inner, 1, 0.0),
-    ];
-    let found: Vec<Line> = all.into_iter().filter(|line| line.frequency > 0.0).collect();
-    if found.is_empty() {
-        return Err(anyhow!(
-            "{} does not turn: there are no lines to mark",
-            dir.display()
-        ));
-    }
-    Ok(found)
+    ]
 }
 
 /// Mean speed with which a ball turns relative to the cage, Hz; 0 where the table does not tell.

@@ -8,7 +8,7 @@ use comm::print;
 use results::failure::Failure;
 
 use super::format::CostKind;
-use super::report::{PointReport, Report, ResultReport};
+use super::report::{PointReport, ResultReport, StudyReport};
 
 /// What is asked.
 #[derive(Debug, Args)]
@@ -33,7 +33,7 @@ pub fn advise(question: &Question) -> Result<(), Failure> {
     } else {
         question.study.clone()
     };
-    let report = Report::load(&path)?;
+    let report = StudyReport::load(&path)?;
     let kind = question.cost.unwrap_or(report.cost);
     let names = asked(&report, question.quantity.as_deref(), &path)?;
     print::line(format_args!(
@@ -63,7 +63,7 @@ pub fn advise(question: &Question) -> Result<(), Failure> {
 }
 
 /// Names of the quantities that have errors, or the one that is asked for.
-fn asked(report: &Report, wanted: Option<&str>, path: &Path) -> anyhow::Result<Vec<String>> {
+fn asked(report: &StudyReport, wanted: Option<&str>, path: &Path) -> anyhow::Result<Vec<String>> {
     let names: Vec<String> = report
         .quantities
         .iter()
@@ -83,7 +83,7 @@ fn asked(report: &Report, wanted: Option<&str>, path: &Path) -> anyhow::Result<V
 }
 
 /// Prints the advice for quantities that have to be reached together; whether there is one.
-fn advise_one(report: &Report, names: &[String], error: f64, kind: CostKind) -> bool {
+fn advise_one(report: &StudyReport, names: &[String], error: f64, kind: CostKind) -> bool {
     let title = match names {
         [one] => one.clone(),
         _ => "all quantities".to_string(),
@@ -138,7 +138,7 @@ fn surely(point: &PointReport, name: &str) -> Option<f64> {
     Some(result.error? + result.uncertainty?)
 }
 
-fn least_error(report: &Report, name: &str) -> Option<f64> {
+fn least_error(report: &StudyReport, name: &str) -> Option<f64> {
     let errors = report.points.iter().filter_map(|p| surely(p, name));
     errors.min_by(f64::total_cmp)
 }

@@ -6,7 +6,7 @@ use std::path::{Component, Path, PathBuf};
 use anyhow::{Context, bail};
 
 use super::format::{OneOrMany, RawAxis, RawQuantity, RawReference, RawSignals, RawStudy, Take};
-use super::plan::{Axis, AxisValue, Plan, Quantity, Reference, Signals, Source, grid};
+use super::plan::{AxisValue, Plan, Reference, Signals, Source, StudyAxis, StudyQuantity, grid};
 
 /// Runs of a point beyond this are a slip.
 const MAX_REPEATS: i64 = 100;
@@ -17,6 +17,14 @@ const RICHARDSON_SIZES: usize = 3;
 
 /// A combination that is left out: axes with the values that make it up.
 type Exclusion = Vec<(usize, Vec<usize>)>;
+
+/// Reads and checks a study, and every scene of its points.
+pub fn load(path: &Path) -> anyhow::Result<Plan> {
+    let text =
+        std::fs::read_to_string(path).with_context(|| format!("cannot read study {}", path.display()))?;
+    let raw: RawStudy = scene::read_tables(&text, path)?;
+    check(raw, path)
+}
 
 /// Checks a study; `path` is its file, where relative paths start.
 pub fn check(raw: RawStudy, path: &Path) -> anyhow::Result<Plan> {
@@ -115,7 +123,7 @@ fn whole(key: &str, value: i64, max: i64) -> anyhow::Result<usize> {
     Ok(value as usize)
 }
 
-fn axes(raw: Vec<RawAxis>) -> anyhow::Result<Vec<Axis>> {
+fn axes(raw: Vec<RawAxis>) -> anyhow::Result<Vec<StudyAxis>> {
     if raw.is_empty() {
         bail!("there are no [[axes]]; a study varies at least one choice");
     }
@@ -137,7 +145,7 @@ fn axes(raw: Vec<RawAxis>) -> anyhow::Result<Vec<Axis>> {
         .collect()
 }
 
-fn axis(raw: RawAxis) -> anyhow::Result<Axis> {
+fn axis(raw: RawAxis) -> anyhow::Result<StudyAxis> {
     let name = &raw.name;
     if raw.values.is_empty() {
         bail!("axis {name:?} has no values");
@@ -163,7 +171,7 @@ fn axis(raw: RawAxis) -> anyhow::Result<Axis> {
     if sized != 0 && sized != raw.values.len() {
         bail!("axis {name:?}: only {sized} of its values have a size; give it to all or to none");
     }
-    Ok(Axis {
+    Ok(StudyAxis {
         label: raw.label.unwrap_or_else(|| raw.name.clone()),
         name: raw.name,
         values: raw
@@ -179,7 +187,7 @@ fn axis(raw: RawAxis) -> anyhow::Result<Axis> {
 }
 
 /// Rules of exclusion: every axis of a rule with the values that it names.
-fn excluded(rules: &[BTreeMap<String, OneOrMany>], axes: &[Axis]) -> anyhow::Result<Vec<Exclusion>> {
+fn excluded(rules: &[BTreeMap<String, OneOrMany>], axes: &[StudyAxis]) -> anyhow::Result<Vec<Exclusion>> {
     let rule = |rule: &BTreeMap<String, OneOrMany>| {
         if rule.is_empty() {
             bail!("an entry of exclude is empty; it would exclude everything");
@@ -195,7 +203,7 @@ fn excluded(rules: &[BTreeMap<String, OneOrMany>], axes: &[Axis]) -> anyhow::Res
     rules.iter().map(rule).collect()
 }
 
-fn axis_index(axes: &[Axis], name: &str) -> anyhow::Result<usize> {
+fn axis_index(axes: &[StudyAxis], name: &str) -> anyhow::Result<usize> {
     let names: Vec<&str> = axes.iter().map(|a| a.name.as_str()).collect();
     match names.iter().position(|n| *n == name) {
         Some(i) => Ok(i),
@@ -203,7 +211,7 @@ fn axis_index(axes: &[Axis], name: &str) -> anyhow::Result<usize> {
     }
 }
 
-fn value_index(axis: &Axis, name: &str) -> anyhow::Result<usize> {
+fn value_index(axis: &StudyAxis, name: &str) -> anyhow::Result<usize> {
     match axis.values.iter().position(|v| v.name == name) {
         Some(i) => Ok(i),
         None => {
@@ -217,7 +225,7 @@ fn value_index(axis: &Axis, name: &str) -> anyhow::Result<usize> {
     }
 }
 
-fn quantity(raw: RawQuantity, axes: &[Axis]) -> anyhow::Result<Quantity> {
+fn quantity(raw: RawQuantity, axes: &[StudyAxis]) -> anyhow::Result<StudyQuantity> {
     let source = match (raw.summary, raw.table, raw.column) {
         (Some(pointer), None, None) => {
             if !pointer.starts_with('/') {
@@ -257,7 +265,7 @@ fn quantity(raw: RawQuantity, axes: &[Axis]) -> anyhow::Result<Quantity> {
     if let (Some(Reference::Value { value: 0.0, .. }), None) = (&reference, raw.scale) {
         bail!("the reference is 0, so a relative error needs a scale");
     }
-    Ok(Quantity {
+    Ok(StudyQuantity {
         name: raw.name,
         unit: raw.unit,
         source,
@@ -266,7 +274,7 @@ fn quantity(raw: RawQuantity, axes: &[Axis]) -> anyhow::Result<Quantity> {
     })
 }
 
-fn reference(raw: RawReference, axes: &[Axis]) -> anyhow::Result<Reference> {
+fn reference(raw: RawReference, axes: &[StudyAxis]) -> anyhow::Result<Reference> {
     let uncertainty = raw.uncertainty.unwrap_or(0.0);
     if !(uncertainty >= 0.0 && uncertainty.is_finite()) {
         bail!("the uncertainty of the reference is {uncertainty}; expected 0 or more");

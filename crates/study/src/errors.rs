@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use anyhow::{Context, anyhow, bail};
 
-use super::plan::{Plan, Point, Quantity, Reference};
+use super::plan::{Plan, Point, Reference, StudyQuantity};
 use super::read::{Reading, history_difference};
 use super::report::{Order, PointReport, ResultReport};
 use super::richardson::{Extrapolated, extrapolate};
@@ -13,7 +13,7 @@ use super::richardson::{Extrapolated, extrapolate};
 pub type Readings = Vec<Option<Reading>>;
 
 /// A reference for one point.
-struct Known<'a> {
+struct ReferenceValue<'a> {
     value: f64,
     uncertainty: f64,
     /// The point it is, if it is one.
@@ -24,7 +24,7 @@ struct Known<'a> {
 /// What a point gave for a quantity, with its error where there is a reference.
 pub fn judge(
     plan: &Plan,
-    quantity: &Quantity,
+    quantity: &StudyQuantity,
     readings: &Readings,
     point: &Point,
 ) -> anyhow::Result<Option<ResultReport>> {
@@ -71,11 +71,11 @@ fn know<'a>(
     reference: &Reference,
     readings: &'a Readings,
     point: &Point,
-) -> anyhow::Result<Known<'a>> {
+) -> anyhow::Result<ReferenceValue<'a>> {
     match reference {
         Reference::Value {
             value, uncertainty, ..
-        } => Ok(Known {
+        } => Ok(ReferenceValue {
             value: *value,
             uncertainty: *uncertainty,
             point: None,
@@ -89,7 +89,7 @@ fn know<'a>(
             let reading = readings[of.index]
                 .as_ref()
                 .ok_or_else(|| anyhow!("point {}, the reference, has no result", of.index))?;
-            Ok(Known {
+            Ok(ReferenceValue {
                 value: reading.value,
                 uncertainty: *uncertainty,
                 point: Some(of.index),
@@ -104,7 +104,7 @@ fn know<'a>(
                         plan.axes[*axis].name
                     )
                 })?;
-            Ok(Known {
+            Ok(ReferenceValue {
                 value: found.value,
                 uncertainty: found.uncertainty,
                 point: None,

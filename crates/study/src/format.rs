@@ -65,7 +65,7 @@ pub enum CostKind {
 pub struct RawAxis {
     pub name: String,
     pub label: Option<String>,
-    pub values: Vec<RawValue>,
+    pub values: Vec<RawAxisValue>,
 }
 
 /// One value of an axis.
@@ -74,7 +74,7 @@ pub struct RawAxis {
     deny_unknown_fields,
     expecting = "a value such as { name = \"fine\", set = [\"...\"] }"
 )]
-pub struct RawValue {
+pub struct RawAxisValue {
     pub name: String,
     pub size: Option<f64>,
     #[serde(default)]

@@ -37,13 +37,13 @@ use results::failure::Failure;
 
 pub use self::advise::{Question, advise};
 pub use self::format::{Cell, CostKind, Meshes, Take};
-pub use self::plan::{Axis, AxisValue, Plan, Point, Quantity, Source, grid};
+pub use self::plan::{AxisValue, Plan, Point, Source, StudyAxis, StudyQuantity, grid};
 pub use self::record::write_whole;
-pub use self::report::{PointReport, Report};
+pub use self::report::{PointReport, StudyReport};
 
 /// What is asked.
 #[derive(Debug, Args)]
-pub struct Request {
+pub struct StudyRequest {
     /// Study file.
     study: PathBuf,
     /// Folder of the results, new or that of an earlier call; default: results/ and the study's name.
@@ -64,8 +64,8 @@ pub struct Request {
 }
 
 /// Runs the points that are missing and writes the tables.
-pub fn study(request: &Request) -> Result<(), Failure> {
-    let plan = Plan::load(&request.study)?;
+pub fn study(request: &StudyRequest) -> Result<(), Failure> {
+    let plan = check::load(&request.study)?;
     if request.list {
         for point in &plan.points {
             print::line(format_args!("{} {}", point.index, plan.name(point)));
@@ -102,7 +102,7 @@ pub fn study(request: &Request) -> Result<(), Failure> {
 }
 
 /// Runs all points of a plan that are missing in `out` and collects them.
-pub fn run_all(plan: &Plan, out: &Path, jobs: usize) -> Result<Report, Failure> {
+pub fn run_all(plan: &Plan, out: &Path, jobs: usize) -> Result<StudyReport, Failure> {
     let out = absolute(out)?;
     plan.check_scenes(&out)?;
     run_missing(plan, &plan.points, &out, jobs, false)?;
@@ -135,7 +135,7 @@ fn absolute(out: &Path) -> anyhow::Result<PathBuf> {
     std::path::absolute(out).with_context(|| format!("cannot use {}", out.display()))
 }
 
-fn print_report(report: &Report) {
+fn print_report(report: &StudyReport) {
     for point in &report.points {
         let values: Vec<&str> = report
             .axes

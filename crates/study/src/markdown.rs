@@ -2,17 +2,17 @@
 
 use std::fmt::Write;
 
-use super::report::{PointReport, Report, ResultReport};
+use super::report::{PointReport, ResultReport, StudyReport};
 
 /// The table as text.
-pub fn text(report: &Report) -> String {
+pub fn text(report: &StudyReport) -> String {
     let mut s = String::new();
     // Writing into a string cannot fail.
     let _ = write_all(report, &mut s);
     s
 }
 
-fn write_all(report: &Report, s: &mut String) -> std::fmt::Result {
+fn write_all(report: &StudyReport, s: &mut String) -> std::fmt::Result {
     writeln!(s, "# {}\n", report.title)?;
     writeln!(
         s,
@@ -52,7 +52,7 @@ fn write_all(report: &Report, s: &mut String) -> std::fmt::Result {
     Ok(())
 }
 
-fn table(report: &Report, s: &mut String) -> std::fmt::Result {
+fn table(report: &StudyReport, s: &mut String) -> std::fmt::Result {
     let mut head: Vec<String> = report.axes.iter().map(|a| a.label.clone()).collect();
     for q in &report.quantities {
         head.push(format!("{}, {}", q.name, q.unit));
@@ -68,7 +68,7 @@ fn table(report: &Report, s: &mut String) -> std::fmt::Result {
     Ok(())
 }
 
-fn row(report: &Report, point: &PointReport) -> Vec<String> {
+fn row(report: &StudyReport, point: &PointReport) -> Vec<String> {
     let mut cells: Vec<String> = report
         .axes
         .iter()
@@ -118,7 +118,7 @@ fn error(result: &ResultReport) -> String {
     }
 }
 
-fn notes(report: &Report, s: &mut String) -> std::fmt::Result {
+fn notes(report: &StudyReport, s: &mut String) -> std::fmt::Result {
     let is = |f: &dyn Fn(&PointReport) -> bool| report.points.iter().any(f);
     if report.quantities.iter().any(|q| q.reference.is_some()) {
         writeln!(

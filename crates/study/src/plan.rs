@@ -6,8 +6,7 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, bail};
 use scene::{MeshFiles, Scene};
 
-use super::check;
-use super::format::{Cell, CostKind, Meshes, RawStudy, Take};
+use super::format::{Cell, CostKind, Meshes, Take};
 
 /// Most points of a study: more is a slip.
 const MAX_POINTS: usize = 10_000;
@@ -32,11 +31,11 @@ pub struct Plan {
     /// What counts as the price.
     pub cost: CostKind,
     /// What is varied.
-    pub axes: Vec<Axis>,
+    pub axes: Vec<StudyAxis>,
     /// The grid without the excluded combinations, the last axis running fastest.
     pub points: Vec<Point>,
     /// What is looked at.
-    pub quantities: Vec<Quantity>,
+    pub quantities: Vec<StudyQuantity>,
     /// What is kept of every run as a labelled set.
     pub signals: Option<Signals>,
 }
@@ -52,7 +51,7 @@ pub struct Signals {
 
 /// One choice that is varied.
 #[derive(Clone, Debug)]
-pub struct Axis {
+pub struct StudyAxis {
     /// Its name in the file.
     pub name: String,
     /// Its name for people.
@@ -85,7 +84,7 @@ pub struct Point {
 
 /// A number that every run gives.
 #[derive(Clone, Debug)]
-pub struct Quantity {
+pub struct StudyQuantity {
     /// Its name.
     pub name: String,
     /// Unit of the number, for people.
@@ -145,14 +144,6 @@ pub enum Reference {
 }
 
 impl Plan {
-    /// Reads and checks a study, and every scene of its points.
-    pub fn load(path: &Path) -> anyhow::Result<Plan> {
-        let text =
-            std::fs::read_to_string(path).with_context(|| format!("cannot read study {}", path.display()))?;
-        let raw: RawStudy = scene::read_tables(&text, path)?;
-        check::check(raw, path)
-    }
-
     /// Checks the scene of every point, before any is run.
     pub fn check_scenes(&self, out: &Path) -> anyhow::Result<()> {
         let files = match self.meshes {
@@ -221,7 +212,7 @@ pub fn arguments(point: &Point, out: &Path) -> Vec<String> {
 /// All combinations of values, without those that are excluded.
 pub fn grid(
     common: &[String],
-    axes: &[Axis],
+    axes: &[StudyAxis],
     excluded: impl Fn(&[usize]) -> bool,
 ) -> anyhow::Result<Vec<Point>> {
     let n = axes
@@ -254,7 +245,7 @@ pub fn grid(
 }
 
 /// Puts the names of the values for `{axis}`.
-fn fill(text: &str, axes: &[Axis], at: &[usize]) -> String {
+fn fill(text: &str, axes: &[StudyAxis], at: &[usize]) -> String {
     axes.iter().zip(at).fold(text.to_string(), |text, (axis, &i)| {
         text.replace(&format!("{{{}}}", axis.name), &axis.values[i].name)
     })

@@ -7,13 +7,13 @@ use figure::{Axis, Figure, Series};
 use results::whole::{make_folder, write_picture};
 
 use super::format::CostKind;
-use super::report::{PointReport, QuantityReport, Report};
+use super::report::{PointReport, QuantityReport, StudyReport};
 
 /// Folder of the plots in that of the study.
 const FOLDER: &str = "plots";
 
 /// Draws a plot for every quantity that has errors and returns the paths, without endings.
-pub fn write(report: &Report, out: &Path) -> anyhow::Result<Vec<PathBuf>> {
+pub fn write(report: &StudyReport, out: &Path) -> anyhow::Result<Vec<PathBuf>> {
     let dir = out.join(FOLDER);
     let mut paths = Vec::new();
     for quantity in &report.quantities {
@@ -30,7 +30,7 @@ pub fn write(report: &Report, out: &Path) -> anyhow::Result<Vec<PathBuf>> {
 }
 
 /// One plot; none when no point has an error above zero.
-fn work_precision(report: &Report, quantity: &QuantityReport) -> Option<Figure> {
+fn work_precision(report: &StudyReport, quantity: &QuantityReport) -> Option<Figure> {
     let joined = joined_axis(report);
     let mut curves: BTreeMap<Vec<usize>, Vec<([f64; 2], String)>> = BTreeMap::new();
     let mut front = Vec::new();
@@ -85,12 +85,12 @@ fn work_precision(report: &Report, quantity: &QuantityReport) -> Option<Figure> 
 }
 
 /// The axis whose values a curve joins: the last that is refined; `None` where nothing is.
-fn joined_axis(report: &Report) -> Option<usize> {
+fn joined_axis(report: &StudyReport) -> Option<usize> {
     report.axes.iter().rposition(|a| !a.sizes.is_empty())
 }
 
 /// Indices of the values of all axes but the joined one.
-fn curve_of(report: &Report, point: &PointReport, joined: Option<usize>) -> Vec<usize> {
+fn curve_of(report: &StudyReport, point: &PointReport, joined: Option<usize>) -> Vec<usize> {
     let index = |(i, axis): (usize, &super::report::AxisReport)| {
         let value = &point.values[&axis.name];
         (Some(i) != joined).then(|| axis.values.iter().position(|v| v == value).unwrap_or(0))
@@ -98,7 +98,7 @@ fn curve_of(report: &Report, point: &PointReport, joined: Option<usize>) -> Vec<
     report.axes.iter().enumerate().filter_map(index).collect()
 }
 
-fn curve_name(report: &Report, at: &[usize], joined: Option<usize>) -> String {
+fn curve_name(report: &StudyReport, at: &[usize], joined: Option<usize>) -> String {
     let axes = report.axes.iter().enumerate().filter(|(i, _)| Some(*i) != joined);
     let names: Vec<&str> = axes
         .zip(at)

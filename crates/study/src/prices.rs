@@ -15,7 +15,7 @@ use results::failure::Failure;
 use scene::{MeshFiles, Scene};
 
 use crate::markdown::write_failure;
-use crate::{Axis, AxisValue, CostKind, Meshes, Plan, Quantity, Report, Source, Take};
+use crate::{AxisValue, CostKind, Meshes, Plan, Source, StudyAxis, StudyQuantity, StudyReport, Take};
 
 mod variants;
 
@@ -28,7 +28,7 @@ const FILE: &str = "prices.md";
 
 /// What is asked.
 #[derive(Debug, Args)]
-pub struct Request {
+pub struct PricesRequest {
     /// Scene file.
     scene: PathBuf,
     /// Changes a value of the scene.
@@ -46,7 +46,7 @@ pub struct Request {
 }
 
 /// Runs what is missing and writes the table.
-pub fn prices(request: &Request) -> Result<(), Failure> {
+pub fn prices(request: &PricesRequest) -> Result<(), Failure> {
     let plan = plan(request)?;
     let out = request.out.clone().unwrap_or_else(|| {
         let stem = request.scene.file_stem().unwrap_or("scene".as_ref());
@@ -60,7 +60,7 @@ pub fn prices(request: &Request) -> Result<(), Failure> {
     Ok(())
 }
 
-fn plan(request: &Request) -> anyhow::Result<Plan> {
+fn plan(request: &PricesRequest) -> anyhow::Result<Plan> {
     let mut axes = request
         .vary
         .iter()
@@ -82,7 +82,7 @@ fn plan(request: &Request) -> anyhow::Result<Plan> {
         }
     };
     let variants = std::iter::once(base).chain(variants::of(&scene).into_iter().filter(is_possible));
-    axes.push(Axis {
+    axes.push(StudyAxis {
         name: EFFECTS.to_string(),
         label: EFFECTS.to_string(),
         values: variants
@@ -114,7 +114,7 @@ fn plan(request: &Request) -> anyhow::Result<Plan> {
 }
 
 /// An axis of `--vary PATH=VALUE,VALUE`.
-fn varied(index: usize, text: &str) -> anyhow::Result<Axis> {
+fn varied(index: usize, text: &str) -> anyhow::Result<StudyAxis> {
     let Some((path, values)) = text.split_once('=') else {
         bail!("--vary {text:?} has no =; expected such as 'speed.inner=1800 rpm,10000 rpm'");
     };
@@ -130,18 +130,22 @@ fn varied(index: usize, text: &str) -> anyhow::Result<Axis> {
     if values.iter().any(|v| v.name.is_empty()) {
         bail!("--vary {text:?} has an empty value");
     }
-    Ok(Axis {
+    Ok(StudyAxis {
         name: format!("vary_{index}"),
         label: path.to_string(),
         values,
     })
 }
 
-/// What a table shows.
-fn quantities(scene: &Scene) -> Vec<Quantity> {
-    let of_ball = |column: &str| (column.to_string(), BTreeMap::new());
-    let first = BTreeMap::from([("ball".to_string(), crate::Cell::Number(0.0))]);
-    let entry = |name: &str, unit: &str, file: &str, (column, rows), take| Quantity {
+/// A quantity from a column of a table, of some rows.
+fn entry(
+    name: &str,
+    unit: &str,
+    file: &str,
+    (column, rows): (String, BTreeMap<String, crate::Cell>),
+    take: Take,
+) -> StudyQuantity {
+    StudyQuantity {
         name: name.to_string(),
         unit: unit.to_string(),
         source: Source::Table {
@@ -152,7 +156,13 @@ fn quantities(scene: &Scene) -> Vec<Quantity> {
         },
         scale: None,
         reference: None,
-    };
+    }
+}
+
+/// What a table shows.
+fn quantities(scene: &Scene) -> Vec<StudyQuantity> {
+    let of_ball = |column: &str| (column.to_string(), BTreeMap::new());
+    let first = BTreeMap::from([("ball".to_string(), crate::Cell::Number(0.0))]);
     let mut list = vec![
         entry(
             "largest inner ball force",
@@ -202,14 +212,14 @@ fn quantities(scene: &Scene) -> Vec<Quantity> {
 }
 
 /// A table per combination of varied values.
-fn table(report: &Report) -> String {
+fn table(report: &StudyReport) -> String {
     let mut s = String::new();
     // Writing into a string cannot fail.
     let _ = write_table(report, &mut s);
     s
 }
 
-fn write_table(report: &Report, s: &mut String) -> std::fmt::Result {
+fn write_table(report: &StudyReport, s: &mut String) -> std::fmt::Result {
     let varied = &report.axes[..report.axes.len() - 1];
     writeln!(s, "# {}\n", report.title)?;
     writeln!(
@@ -259,7 +269,7 @@ fn write_table(report: &Report, s: &mut String) -> std::fmt::Result {
     Ok(())
 }
 
-fn row(report: &Report, base: &crate::PointReport, point: &crate::PointReport) -> Vec<String> {
+fn row(report: &StudyReport, base: &crate::PointReport, point: &crate::PointReport) -> Vec<String> {
     let is_base = point.values[EFFECTS] == BASE;
     let mut cells = vec![point.values[EFFECTS].clone()];
     for q in &report.quantities {

@@ -13,7 +13,7 @@ pub const SCHEMA: u32 = 1;
 
 /// The whole file.
 #[derive(Clone, Debug, Deserialize, Serialize)]
-pub struct Report {
+pub struct StudyReport {
     /// Version of the file.
     pub schema: u32,
     /// Free text for people.
@@ -181,12 +181,12 @@ impl CostKind {
     }
 }
 
-impl Report {
+impl StudyReport {
     /// Reads a file that a study wrote.
-    pub fn load(path: &Path) -> anyhow::Result<Report> {
+    pub fn load(path: &Path) -> anyhow::Result<StudyReport> {
         let text =
             std::fs::read_to_string(path).with_context(|| format!("cannot read {}", path.display()))?;
-        let report: Report = serde_json::from_str(&text).with_context(|| {
+        let report: StudyReport = serde_json::from_str(&text).with_context(|| {
             format!(
                 "{} is no table of a study; expected the study.json of raceway study",
                 path.display()

@@ -11,7 +11,7 @@ use results::whole::make_folder;
 
 use super::plan::{Plan, Signals};
 use super::record::{RUN, folder, write_whole};
-use super::report::Report;
+use super::report::StudyReport;
 
 /// The table of labels.
 pub const LABELS: &str = "labels.csv";
@@ -19,7 +19,7 @@ pub const LABELS: &str = "labels.csv";
 const SIGNALS: &str = "signals";
 
 /// Writes the set of a study, if it asks for one; returns the number of its signals.
-pub fn write(plan: &Plan, report: &Report, out: &Path) -> anyhow::Result<Option<usize>> {
+pub fn write(plan: &Plan, report: &StudyReport, out: &Path) -> anyhow::Result<Option<usize>> {
     let Some(signals) = &plan.signals else {
         return Ok(None);
     };

@@ -8,11 +8,11 @@ use anyhow::Context;
 use super::errors::{Readings, describe, judge, mark_front, orders};
 use super::machine;
 use super::markdown;
-use super::plan::{Plan, Source};
+use super::plan::{Plan, Source, StudyQuantity};
 use super::read::read;
 use super::record::{self, Cost, RUN, Record};
 use super::report::{
-    AxisReport, CostReport, PointReport, QuantityReport, Report, ResultReport, SCHEMA, Spread,
+    AxisReport, CostReport, PointReport, QuantityReport, ResultReport, SCHEMA, Spread, StudyReport,
 };
 
 /// File names in the folder of a study.
@@ -23,7 +23,7 @@ pub const MARKDOWN: &str = "study.md";
 pub const CSV: &str = "study.csv";
 
 /// Reads what all points gave, judges it, and writes the tables.
-pub fn collect(plan: &Plan, out: &Path) -> anyhow::Result<Report> {
+pub fn collect(plan: &Plan, out: &Path) -> anyhow::Result<StudyReport> {
     let records = plan
         .points
         .iter()
@@ -42,45 +42,69 @@ pub fn collect(plan: &Plan, out: &Path) -> anyhow::Result<Report> {
             .map(|r| r.value);
     }
     for quantity in &plan.quantities {
-        let mut readings: Readings = Vec::new();
-        for (point, record) in points.iter_mut().zip(&records) {
-            let is_there = record.as_ref().is_some_and(|r| r.failure.is_none());
-            let dir = record::folder(out, point.index).join(RUN);
-            readings.push(match is_there.then(|| read(&quantity.source, &dir)) {
-                Some(Ok(reading)) => Some(reading),
-                Some(Err(error)) => {
-                    point.unread.insert(quantity.name.clone(), format!("{error:#}"));
-                    None
-                }
-                None => None,
-            });
-        }
-        for point in &plan.points {
-            let report = &mut points[point.index];
-            match judge(plan, quantity, &readings, point) {
-                Ok(None) => {}
-                Ok(Some(result)) => {
-                    report.results.insert(quantity.name.clone(), result);
-                }
-                // The number is there; only its error is not.
-                Err(error) => {
-                    report.unread.insert(quantity.name.clone(), format!("{error:#}"));
-                    if let Some(reading) = &readings[point.index] {
-                        report.results.insert(quantity.name.clone(), bare(reading.value));
-                    }
+        let readings = read_all(quantity, &mut points, &records, out);
+        judge_all(plan, quantity, &readings, &mut points);
+        mark_front(&mut points, &quantity.name, plan.cost);
+    }
+    let report = report(plan, &records, points);
+    record::write_whole(&out.join(JSON), &record::to_json(&report)?)?;
+    record::write_whole(&out.join(CSV), &csv_text(&report)?)?;
+    record::write_whole(&out.join(MARKDOWN), &markdown::text(&report))?;
+    Ok(report)
+}
+
+/// What the runs of all points say of a quantity; a point that does not tell notes why.
+fn read_all(
+    quantity: &StudyQuantity,
+    points: &mut [PointReport],
+    records: &[Option<Record>],
+    out: &Path,
+) -> Readings {
+    let mut readings: Readings = Vec::new();
+    for (point, record) in points.iter_mut().zip(records) {
+        let is_there = record.as_ref().is_some_and(|r| r.failure.is_none());
+        let dir = record::folder(out, point.index).join(RUN);
+        readings.push(match is_there.then(|| read(&quantity.source, &dir)) {
+            Some(Ok(reading)) => Some(reading),
+            Some(Err(error)) => {
+                point.unread.insert(quantity.name.clone(), format!("{error:#}"));
+                None
+            }
+            None => None,
+        });
+    }
+    readings
+}
+
+/// Judges the readings of a quantity at all points.
+fn judge_all(plan: &Plan, quantity: &StudyQuantity, readings: &Readings, points: &mut [PointReport]) {
+    for point in &plan.points {
+        let report = &mut points[point.index];
+        match judge(plan, quantity, readings, point) {
+            Ok(None) => {}
+            Ok(Some(result)) => {
+                report.results.insert(quantity.name.clone(), result);
+            }
+            // The number is there; only its error is not.
+            Err(error) => {
+                report.unread.insert(quantity.name.clone(), format!("{error:#}"));
+                if let Some(reading) = &readings[point.index] {
+                    report.results.insert(quantity.name.clone(), bare(reading.value));
                 }
             }
         }
-        mark_front(&mut points, &quantity.name, plan.cost);
     }
-    let orders = orders(plan, &points);
-    let report = Report {
+}
+
+/// The report of judged points.
+fn report(plan: &Plan, records: &[Option<Record>], points: Vec<PointReport>) -> StudyReport {
+    StudyReport {
         schema: SCHEMA,
         title: plan.title.clone(),
         scene: plan.scene.display().to_string(),
         date: machine::date(),
         machine: machine::describe(),
-        programs: programs(&records),
+        programs: programs(records),
         threads: plan.threads,
         repeats: plan.repeats,
         cost: plan.cost,
@@ -94,13 +118,9 @@ pub fn collect(plan: &Plan, out: &Path) -> anyhow::Result<Report> {
                 reference: q.reference.as_ref().map(|r| describe(plan, r)),
             })
             .collect(),
+        orders: orders(plan, &points),
         points,
-        orders,
-    };
-    record::write_whole(&out.join(JSON), &record::to_json(&report)?)?;
-    record::write_whole(&out.join(CSV), &csv_text(&report)?)?;
-    record::write_whole(&out.join(MARKDOWN), &markdown::text(&report))?;
-    Ok(report)
+    }
 }
 
 /// A number without a reference.
@@ -122,7 +142,7 @@ fn programs(records: &[Option<Record>]) -> Vec<String> {
     programs
 }
 
-fn axis_report(axis: &super::plan::Axis) -> AxisReport {
+fn axis_report(axis: &super::plan::StudyAxis) -> AxisReport {
     AxisReport {
         name: axis.name.clone(),
         label: axis.label.clone(),
@@ -184,7 +204,7 @@ fn spread(values: impl Iterator<Item = f64>) -> Spread {
     }
 }
 
-fn csv_text(report: &Report) -> anyhow::Result<String> {
+fn csv_text(report: &StudyReport) -> anyhow::Result<String> {
     let mut writer = csv::Writer::from_writer(Vec::new());
     let mut header: Vec<String> = vec!["point".to_string()];
     header.extend(report.axes.iter().map(|a| a.name.clone()));
@@ -215,7 +235,7 @@ fn csv_text(report: &Report) -> anyhow::Result<String> {
     Ok(String::from_utf8(bytes)?)
 }
 
-fn csv_row(report: &Report, point: &PointReport) -> Vec<String> {
+fn csv_row(report: &StudyReport, point: &PointReport) -> Vec<String> {
     let number = |x: f64| format!("{x:?}");
     let optional = |x: Option<f64>| x.map_or(String::new(), number);
     let mut row = vec![point.index.to_string()];

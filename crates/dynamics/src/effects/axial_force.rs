@@ -5,11 +5,11 @@
 use input::{FORCE, Problems, Quantity, RawSchedule, Schedule, check_schedule, schedule_of};
 use serde::Deserialize;
 
-use super::loads::{Effect, Loads, Now};
+use super::loads::{Loads, Now};
 use super::rules::PeakLoad;
 use super::table::{self, About, Context, Setting, SpeedRole, require_load};
 use crate::error::DynamicsError;
-use crate::model::Model;
+use crate::model::{Effect, Model};
 
 const EXAMPLE: &str = r#"[effects.axial_force]
 value = "2 kN"          # + presses the inner ring along +z into the balls (preload)
@@ -75,7 +75,10 @@ impl Effect for AxialForce {
     }
 
     fn add_loads(&self, model: &Model, now: &Now, loads: &mut Loads) -> Result<(), DynamicsError> {
-        loads.add_shaft_force(model, [0.0, 0.0, self.value * now.factor(&self.schedule)]);
+        loads.add_shaft_force_at(
+            model.load_point,
+            [0.0, 0.0, self.value * now.factor(&self.schedule)],
+        );
         Ok(())
     }
 }

@@ -8,13 +8,13 @@
 
 use serde::Deserialize;
 
-use super::loads::{Effect, Loads, Now};
+use super::loads::{Loads, Now};
 use super::rules::{Case, judge, percent};
 use super::table::{self, About, Setting, SpeedRole, Trial};
 use crate::balls::BallResult;
 use crate::error::DynamicsError;
 use crate::kinematics::{BallSpeeds, Kinematics, RingSpeeds};
-use crate::model::Model;
+use crate::model::{Effect, Model};
 
 const EXAMPLE: &str = "[effects.ball_centrifugal]      # needs [speed]\n";
 
@@ -78,7 +78,7 @@ impl Effect for BallCentrifugal {
     fn add_loads(&self, model: &Model, now: &Now, loads: &mut Loads) -> Result<(), DynamicsError> {
         let radius = model.geometry.ball_centre()[0];
         for ball in 0..model.geometry.n_balls {
-            let turning = self.ball_speeds.of_ball(model, now, self.slip, ball);
+            let turning = self.ball_speeds.of_ball(&model.geometry, now, self.slip, ball);
             let cage = turning.cage_speed(&self.speeds, now.time);
             let slope = model.ball_mass() * cage * cage;
             loads.balls[ball][0] += slope * radius;

@@ -9,12 +9,12 @@
 use input::{DENSITY, Problems, Quantity};
 use serde::Deserialize;
 
-use super::loads::{Effect, Loads, Now};
+use super::loads::{Loads, Now};
 use super::rules::{Case, judge, percent};
 use super::table::{self, About, Context, Setting, SpeedRole};
 use crate::error::DynamicsError;
 use crate::kinematics::BothRings;
-use crate::model::Model;
+use crate::model::{Effect, Model};
 
 const EXAMPLE: &str = r#"[effects.ball_drag]             # needs [balls] with motion = "free", and [dynamic]
 coefficient = 0.5               # drag coefficient of a ball, on its cross-section

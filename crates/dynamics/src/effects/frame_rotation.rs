@@ -18,12 +18,12 @@
 use contact::Side;
 use serde::Deserialize;
 
-use super::loads::{Effect, FrameTurn, Loads, Now};
+use super::loads::{FrameTurn, Loads, Now};
 use super::rules::{Case, judge, percent};
 use super::table::{self, About, Need, Setting, SpeedRole, Trial};
 use crate::error::DynamicsError;
 use crate::kinematics::RingSpeeds;
-use crate::model::Model;
+use crate::model::{Effect, Model};
 use ring::Hold;
 use ring::division::body_load;
 

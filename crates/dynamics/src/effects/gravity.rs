@@ -13,11 +13,11 @@ use contact::Side;
 use input::{ACCELERATION, Problems, Quantity, RawSchedule, Schedule, check_schedule, schedule_of};
 use serde::Deserialize;
 
-use super::loads::{Effect, Loads, Now};
+use super::loads::{Loads, Now};
 use super::rules::{Case, judge, percent};
 use super::table::{self, About, Context, Setting, SpeedRole, Trial};
 use crate::error::DynamicsError;
-use crate::model::Model;
+use crate::model::{Effect, Model};
 use ring::{NodeMasses, RingError, RingModel};
 
 const EXAMPLE: &str = r#"[effects.gravity]
@@ -169,7 +169,7 @@ impl Effect for Gravity {
             load[0] += mass * (g[0] * cos + g[1] * sin);
             load[1] += mass * g[2];
         }
-        loads.add_shaft_force(model, g.map(|a| model.shaft_mass * a));
+        loads.add_shaft_force_at(model.load_point, g.map(|a| model.shaft_mass * a));
         if let Some(inertia) = model.carried_inertia().filter(|_| model.weighs_carried) {
             // As a rigid body: what it sags by itself is left out.
             let centre = inertia.first_moment / inertia.mass;

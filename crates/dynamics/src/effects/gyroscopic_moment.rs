@@ -41,12 +41,12 @@ use contact::Side;
 use input::Problems;
 use serde::Deserialize;
 
-use super::loads::{Effect, Loads, Now};
+use super::loads::{Loads, Now};
 use super::rules::{Case, judge, percent};
 use super::table::{self, About, Context, Setting, SpeedRole, Trial};
 use crate::error::DynamicsError;
 use crate::kinematics::{BallSpeeds, RingSpeeds, pitch_angle};
-use crate::model::Model;
+use crate::model::{Effect, Model};
 
 const EXAMPLE: &str = "[effects.gyroscopic_moment]     # needs [speed]
 inner_share = 0.0               # share of the moment that friction at the inner raceway carries
@@ -160,10 +160,10 @@ impl GyroscopicMoment {
     /// Moment M_g of one ball at an instant, N m, about e_psi.
     pub fn moment(&self, model: &Model, now: &Now, ball: usize) -> f64 {
         let geometry = &model.geometry;
-        let kinematics = self.ball_speeds.of_ball(model, now, self.slip, ball);
+        let kinematics = self.ball_speeds.of_ball(geometry, now, self.slip, ball);
         let spin = kinematics.spin(&self.speeds, now.time);
         let cage = kinematics.cage_speed(&self.speeds, now.time);
-        let pitch = pitch_angle(geometry, now.contact_angle(model, ball, Side::Outer));
+        let pitch = pitch_angle(geometry, now.contact_angle(geometry, ball, Side::Outer));
         let inertia = model.ball_mass() * geometry.ball_diameter.powi(2) / 10.0;
         inertia * spin * cage * pitch.sin()
     }
@@ -180,7 +180,7 @@ impl Effect for GyroscopicMoment {
             let moment = self.moment(model, now, ball);
             for side in Side::BOTH {
                 let size = self.shares[side.index()] * moment / model.geometry.ball_diameter;
-                let (sin, cos) = now.contact_angle(model, ball, side).sin_cos();
+                let (sin, cos) = now.contact_angle(&model.geometry, ball, side).sin_cos();
                 // The ring gets the negative of the force on the ball.
                 let sign = side.sign();
                 loads.add_contact_force(ball, side, [-sign * size * sin, sign * size * cos]);

@@ -1,18 +1,9 @@
-//! Loads on the bodies at one instant, and the trait of what adds them.
-//!
-//! An effect is immutable: it cannot hide state.
+//! Loads on the bodies at one instant, and what is known of the bearing at it.
 
-use contact::Side;
+use contact::{BearingGeometry, Side};
 use input::Schedule;
 pub use ring::FrameTurn;
-use timer::SharedLaps;
 
-use crate::balls::BallResult;
-use crate::error::DynamicsError;
-use crate::interactions::seat_spring::Seat;
-use crate::interactions::traction::Traction;
-use crate::kinematics::RingSpeeds;
-use crate::model::Model;
 use crate::surfaces::Strips;
 use ring::division::NodePlaces;
 
@@ -45,26 +36,21 @@ pub struct Loads {
 }
 
 impl Loads {
-    /// No load.
-    pub fn none(model: &Model) -> Loads {
+    /// No load on a bearing with so many balls.
+    pub fn none(n_balls: usize) -> Loads {
         Loads {
             shaft: [0.0; 5],
             lever: [0.0; 3],
             ring_on_shaft: [0.0; 5],
             ring_on_seat: 0.0,
             seat: 0.0,
-            ball_slopes: vec![0.0; model.geometry.n_balls],
+            ball_slopes: vec![0.0; n_balls],
             follows_angles: false,
-            balls: vec![[0.0; 2]; model.geometry.n_balls],
+            balls: vec![[0.0; 2]; n_balls],
             rings: [None, None],
             contacts: Vec::new(),
             frames: [None, None],
         }
-    }
-
-    /// Adds a force (N) at the load point of the shaft.
-    pub fn add_shaft_force(&mut self, model: &Model, force: [f64; 3]) {
-        self.add_shaft_force_at(model.load_point, force);
     }
 
     /// Adds a force (N) on the shaft's axis at a distance (m) from the plane of the inner groove centres.
@@ -152,68 +138,10 @@ impl Now<'_> {
     }
 
     /// Contact angle of a ball on one raceway, rad.
-    pub fn contact_angle(&self, model: &Model, ball: usize, side: Side) -> f64 {
+    pub fn contact_angle(&self, geometry: &BearingGeometry, ball: usize, side: Side) -> f64 {
         match self.angles {
             Some(angles) => angles[2 * ball + side.index()],
-            None => model.geometry.free_contact_angle(),
+            None => geometry.free_contact_angle(),
         }
     }
-}
-
-/// What an effect with loads is in a bearing.
-pub trait Effect: Send + Sync {
-    /// Name of its scene table.
-    fn name(&self) -> &'static str;
-
-    /// Adds its loads at an instant.
-    fn add_loads(&self, model: &Model, now: &Now, loads: &mut Loads) -> Result<(), DynamicsError>;
-
-    /// Whether it is the inertia of a ring's turning frame.
-    fn turns_frame(&self, _side: Side) -> bool {
-        false
-    }
-
-    /// Slot of interactions: the spring that holds the outer ring along the axis, whose seat then slides.
-    fn seat(&self) -> Option<Seat> {
-        None
-    }
-
-    /// Uniform acceleration that acts on every mass at an instant, m/s^2: the load of a free ball, in space.
-    fn acceleration(&self, _now: &Now) -> [f64; 3] {
-        [0.0; 3]
-    }
-
-    /// Slot of free balls: speeds of the rings between which they roll in an equilibrium.
-    fn rolling_speeds(&self) -> Option<&RingSpeeds> {
-        None
-    }
-
-    /// Slot of free balls: their traction; balls are free where there is one.
-    fn traction(&self) -> Option<&Traction> {
-        None
-    }
-
-    /// Drag on a free ball over the square of its speed, N s^2/m^2.
-    fn drag(&self, _model: &Model) -> f64 {
-        0.0
-    }
-
-    /// What a reader of an equilibrium should know: where the effect is beyond what it assumes.
-    fn warning(&self, _model: &Model, _now: &Now, _balls: &[BallResult]) -> Option<String> {
-        None
-    }
-}
-
-/// Loads of all effects of the model at an instant.
-pub fn loads(model: &Model, now: &Now) -> Result<Loads, DynamicsError> {
-    timed_loads(model, now, &SharedLaps::default())
-}
-
-/// [`loads`], with the time of each effect added to `costs`.
-pub fn timed_loads(model: &Model, now: &Now, costs: &SharedLaps) -> Result<Loads, DynamicsError> {
-    let mut loads = Loads::none(model);
-    for effect in &model.effects {
-        costs.time(effect.name(), || effect.add_loads(model, now, &mut loads))?;
-    }
-    Ok(loads)
 }

@@ -32,7 +32,9 @@ pub use frame_rotation::{FrameRotation, static_inertia};
 pub use gravity::Gravity;
 pub use gyroscopic_moment::GyroscopicMoment;
 pub(crate) use loads::resultant;
-pub use loads::{AtEquilibrium, Effect, FrameTurn, Loads, Now, loads, timed_loads};
+pub use loads::{AtEquilibrium, FrameTurn, Loads, Now};
+
+pub use crate::model::Effect;
 pub use moment::Moment;
 pub use radial_force::RadialForce;
 pub use spring_preload::SpringPreload;

@@ -3,10 +3,10 @@
 use input::{MOMENT, Problems, Quantity, RawSchedule, Schedule, check_schedule, schedule_of};
 use serde::Deserialize;
 
-use super::loads::{Effect, Loads, Now};
+use super::loads::{Loads, Now};
 use super::table::{self, About, Context, Setting, SpeedRole, require_load};
 use crate::error::DynamicsError;
-use crate::model::Model;
+use crate::model::{Effect, Model};
 
 const EXAMPLE: &str = r#"[effects.moment]
 x = "3 N m"

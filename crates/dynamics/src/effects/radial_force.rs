@@ -5,11 +5,11 @@
 use input::{ANGLE, FORCE, Problems, Quantity, RawSchedule, Schedule, check_schedule, schedule_of};
 use serde::Deserialize;
 
-use super::loads::{Effect, Loads, Now};
+use super::loads::{Loads, Now};
 use super::rules::PeakLoad;
 use super::table::{self, About, Context, Setting, SpeedRole, require_load};
 use crate::error::DynamicsError;
-use crate::model::Model;
+use crate::model::{Effect, Model};
 
 const EXAMPLE: &str = r#"[effects.radial_force]
 value = "1 kN"          # negative points the other way
@@ -83,7 +83,7 @@ impl Effect for RadialForce {
     fn add_loads(&self, model: &Model, now: &Now, loads: &mut Loads) -> Result<(), DynamicsError> {
         let (sin, cos) = self.direction.sin_cos();
         let value = self.value * now.factor(&self.schedule);
-        loads.add_shaft_force(model, [value * cos, value * sin, 0.0]);
+        loads.add_shaft_force_at(model.load_point, [value * cos, value * sin, 0.0]);
         Ok(())
     }
 }

@@ -19,12 +19,12 @@
 use input::{FORCE, MASS, Problems, Quantity, STIFFNESS};
 use serde::Deserialize;
 
-use super::loads::{Effect, Loads, Now};
+use super::loads::{Loads, Now};
 use super::rules::PeakLoad;
 use super::table::{self, About, Context, Setting, SpeedRole};
 use crate::error::DynamicsError;
 use crate::interactions::seat_spring::Seat;
-use crate::model::Model;
+use crate::model::{Effect, Model};
 
 const EXAMPLE: &str = r#"[effects.spring_preload]        # the outer ring slides along the axis
 force = "300 N"                 # presses it along -z against the balls, at zero displacement of the ring

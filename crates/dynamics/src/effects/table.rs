@@ -18,11 +18,11 @@ use contact::film::Lubricant;
 use input::{Clock, Problems, Quantity, Schedule};
 use ring::RingModel;
 
-use super::loads::Effect;
 use super::rules::{Case, PeakLoad};
 use crate::error::DynamicsError;
 use crate::interactions::contact_damping::ContactDamping;
 use crate::kinematics::{BallSpeeds, RingSpeeds, SlipRatios};
+use crate::model::Effect;
 use crate::mounting::Conditions;
 
 /// A load beyond this is a slip of the unit, N and N m.

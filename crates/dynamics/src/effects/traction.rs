@@ -22,7 +22,7 @@ use input::{Problems, Quantity, SPEED, STRESS};
 use serde::Deserialize;
 
 use super::ball_centrifugal::BallCentrifugal;
-use super::loads::{Effect, Loads, Now};
+use super::loads::{Loads, Now};
 use super::rules::Case;
 use super::steady_balls::SteadyBalls;
 use super::table::{self, About, Context, Setting, SpeedRole};
@@ -30,7 +30,7 @@ use crate::error::DynamicsError;
 use crate::interactions::traction::law::{CurvePoints, SlipTable};
 use crate::interactions::traction::{Creep, Curve, LimitingShear, PatchPoints, Traction, TractionLaw};
 use crate::kinematics::{BallSpeeds, RingSpeeds};
-use crate::model::Model;
+use crate::model::{Effect, Model};
 
 const EXAMPLE: &str = r#"[effects.traction]              # needs [balls] with motion = "free"
 law = "coulomb"                 # or "curve", "limiting_shear"

@@ -22,12 +22,12 @@ use contact::Side;
 use input::{ANGLE, LENGTH, MASS, Problems, Quantity};
 use serde::Deserialize;
 
-use super::loads::{Effect, Loads, Now};
+use super::loads::{Loads, Now};
 use super::rules::{Case, PeakLoad, judge, percent};
 use super::table::{self, About, Context, Need, Setting, SpeedRole, Trial};
 use crate::error::DynamicsError;
 use crate::kinematics::Speed;
-use crate::model::Model;
+use crate::model::{Effect, Model};
 
 const EXAMPLE: &str = r#"[effects.unbalance]             # needs [speed]
 mass = "10 g"                   # a mass off the axis; it is part of shaft.mass

@@ -21,7 +21,7 @@ use crate::error::DynamicsError;
 use crate::interactions::free_contact::orientation::turned;
 use crate::interactions::free_contact::place::GrooveCircle;
 use crate::interactions::free_contact::{
-    ContactStep, ElasticPlace, FREE_FEET, FREE_PORTS, FreeContacts, RingStep,
+    ContactStep, ElasticPlace, FREE_FEET, FREE_PORTS, FoundContact, FreeContacts, RingStep,
 };
 use crate::interactions::raceway_contact::Site;
 use crate::interactions::steady_rolling::{SteadyRolling, pure_rolling, rolling_speed};
@@ -274,20 +274,7 @@ impl Motion<'_> {
             scheme: self.settings.scheme,
             damping: self.settings.contact_damping,
             ring,
-            traction: match self.strips_at((state, span.start), (ball, site.side)) {
-                Some(strips) => {
-                    let approach = (
-                        state.approaches[index],
-                        strips.surface.law.smooth_approach(0.0, least),
-                    );
-                    let angle = state.angles[index];
-                    Arc::new(Traction {
-                        places: strips.places(&traction.places, ellipse.semi_axes[0], approach, angle),
-                        ..Traction::clone(traction)
-                    })
-                }
-                None => traction.clone(),
-            },
+            traction: self.traction_at((state, span.start), (index, site), ellipse.semi_axes, traction),
             ellipse: Ellipse {
                 film: traction
                     .law
@@ -296,6 +283,31 @@ impl Motion<'_> {
             },
             small_slip: traction.creep.slip(traction.law.at(0.0)[0], &rolling),
             slip_at: Default::default(),
+        }
+    }
+
+    /// The traction of a contact, on a real surface at the places of its strips; its patch has these semi-axes, m.
+    fn traction_at(
+        &self,
+        (state, start): (&MotionState, f64),
+        (index, site): (usize, &Site),
+        semi_axes: [f64; 2],
+        traction: &Arc<Traction>,
+    ) -> Arc<Traction> {
+        match self.strips_at((state, start), (site.ball, site.side)) {
+            Some(strips) => {
+                let least = EARTH * self.model.ball_mass();
+                let approach = (
+                    state.approaches[index],
+                    strips.surface.law.smooth_approach(0.0, least),
+                );
+                let angle = state.angles[index];
+                Arc::new(Traction {
+                    places: strips.places(&traction.places, semi_axes[0], approach, angle),
+                    ..Traction::clone(traction)
+                })
+            }
+            None => traction.clone(),
         }
     }
 
@@ -339,17 +351,7 @@ impl Motion<'_> {
                 });
                 state.track.push(track);
             }
-            let [w_t, w_q, spin] = found.slip.turning;
-            let [f_t, f_q, moment @ ..] = found.traction.action;
-            state.contacts.push(ContactTraction {
-                slip: found.slip.centre,
-                turning: [w_t, w_q],
-                spin,
-                force: [f_t, f_q],
-                moment,
-                power: -found.work / contact.dt,
-                torque: found.torque,
-            });
+            state.contacts.push(contact_traction(found, contact.dt));
         }
         let turns = before.orientations.iter().zip(&solution.free_ends);
         state.orientations = turns.map(|(q, x)| turned(*q, [x[3], x[4], x[5]])).collect();
@@ -360,6 +362,21 @@ impl Motion<'_> {
             next.ball_velocities[ball] = state.meridian_velocity(ball);
         }
         next.free = Some(state);
+    }
+}
+
+/// What a contact of a free ball does over a step of `dt`, s.
+fn contact_traction(found: &FoundContact, dt: f64) -> ContactTraction {
+    let [w_t, w_q, spin] = found.slip.turning;
+    let [f_t, f_q, moment @ ..] = found.traction.action;
+    ContactTraction {
+        slip: found.slip.centre,
+        turning: [w_t, w_q],
+        spin,
+        force: [f_t, f_q],
+        moment,
+        power: -found.work / dt,
+        torque: found.torque,
     }
 }
 

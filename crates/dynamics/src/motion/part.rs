@@ -11,7 +11,7 @@ use super::span::PartSpan;
 use super::state::MotionState;
 use crate::bearing::{BearingParts, ContactList, SeatStep};
 use crate::bodies::{FlatBody, FrameInertia, Inertia, Name, StepTakes};
-use crate::effects::{self, Loads, Now};
+use crate::effects::{Loads, Now};
 use crate::error::DynamicsError;
 use crate::interactions::discrete_gradient::MeanForce;
 use crate::interactions::raceway_contact::{Means, Site};
@@ -57,7 +57,7 @@ impl Motion<'_> {
             angles: Some(&angles),
             seen: None,
         };
-        effects::timed_loads(self.model, &now, &self.costs)
+        self.model.timed_loads(&now, &self.costs)
     }
 
     /// Both rings under their known loads, with contacts as they are placed.

@@ -105,15 +105,13 @@ impl System<'_> {
     ) -> Result<NewtonSolution, DynamicsError> {
         let (mut history, mut best, mut stalled) = (Vec::new(), f64::INFINITY, 0);
         let mut at = self.evaluate(&x, policy.costs);
-        let mut bodies = Vec::new();
-        let (mut worst, mut limit) = (0, 0.0);
+        let (mut worst, mut limit, mut bodies) = (0, 0.0, Vec::new());
         for iteration in 0..policy.most_iterations {
             let (place, now) = largest(&policy.scaled(&at.residual));
             worst = place;
             if !now.is_finite() {
-                return Err(DynamicsError::NotFinite {
-                    what: "a contact force",
-                });
+                let what = "a contact force";
+                return Err(DynamicsError::NotFinite { what });
             }
             let is_fast = history.last().is_none_or(|last| now <= KEPT_SHRINK * last);
             history.push(now);
@@ -133,8 +131,7 @@ impl System<'_> {
             let places = || policy.ends_at_floor && now <= self.round_off(&x);
             let is_at_floor = policy.ends_at_floor && now <= floor() || now <= limit && places();
             let is_floor = || now <= limit.max(floor()) || places();
-            let is_solved = now <= RESIDUAL_TARGET * scale || (stalled >= 2 && is_floor());
-            if is_solved {
+            if now <= RESIDUAL_TARGET * scale || (stalled >= 2 && is_floor()) {
                 let (unknowns, iterations) = (x, iteration);
                 *kept = Some(tangent);
                 return Ok(NewtonSolution { unknowns, iterations });
@@ -155,14 +152,17 @@ impl System<'_> {
             (x, at) = self.search(x, at, &step, policy);
             (policy.watch)(&x)?;
         }
-        let tail = history.len().saturating_sub(8);
-        Err(DynamicsError::NewtonStalled {
+        Err(self.stalled(policy, history, (worst, limit)))
+    }
+
+    fn stalled(&self, policy: &Policy, mut history: Vec<f64>, (worst, limit): (usize, f64)) -> DynamicsError {
+        DynamicsError::NewtonStalled {
             iterations: policy.most_iterations,
             residual: *history.last().unwrap_or(&f64::NAN),
             place: self.name(worst),
             limit,
-            history: history.split_off(tail),
-        })
+            history: history.split_off(history.len().saturating_sub(8)),
+        }
     }
 
     /// The tangent at a point; `bodies` is the part that hardly changes over a step, made when first asked for.

@@ -1,6 +1,9 @@
 //! The kinds of quantity a scene can hold: names, dimensions, SI units, examples.
 
-use super::{Dimension, EXPONENT_TOLERANCE};
+use super::unit::Dimension;
+
+/// Exponents closer than this are equal: powers such as 10/9 are rounded, real ones differ by far more.
+const EXPONENT_TOLERANCE: f64 = 1e-9;
 
 /// Facts about one kind of quantity.
 #[derive(Debug)]

@@ -2,8 +2,7 @@
 
 use std::f64::consts::PI;
 
-use super::Dimension;
-use super::expression::Unit;
+use super::unit::{Dimension, Unit};
 
 /// A unit symbol: size = `factor` * 10^`power_of_ten` in SI.
 struct Symbol {

@@ -87,28 +87,7 @@ pub fn groove_of(
                 .to_string(),
         ));
     };
-    let mut arc: Option<Arc> = None;
-    for piece in &raceway {
-        let OutlineCurve::Arc { circle, .. } = piece.curve else {
-            return Err(wrong(format!(
-                "group \"raceway\" is straight from {} to {}; expected arcs of one circle",
-                place(piece.start),
-                place(piece.end)
-            )));
-        };
-        let first = *arc.get_or_insert(circle);
-        let apart = (circle.centre_r - first.centre_r).hypot(circle.centre_z - first.centre_z);
-        if apart + (circle.radius - first.radius).abs() > 10.0 * tolerance {
-            return Err(wrong(format!(
-                "group \"raceway\" has arcs of {:.4} mm about {} and of {:.4} mm about {}; expected arcs of one circle",
-                1e3 * first.radius,
-                place([first.centre_r, first.centre_z]),
-                1e3 * circle.radius,
-                place([circle.centre_r, circle.centre_z])
-            )));
-        }
-    }
-    let arc = arc.expect("a raceway has pieces");
+    let arc = one_arc(&raceway, tolerance).map_err(wrong)?;
     let mut ends: Vec<[f64; 2]> = raceway
         .iter()
         .flat_map(|piece| [piece.start, piece.end])
@@ -128,6 +107,32 @@ pub fn groove_of(
             points().fold(f64::NEG_INFINITY, f64::max),
         ],
     })
+}
+
+/// The circle of all pieces of a raceway, to a tolerance, m.
+fn one_arc(raceway: &[&OutlinePiece], tolerance: f64) -> Result<Arc, String> {
+    let mut arc: Option<Arc> = None;
+    for piece in raceway {
+        let OutlineCurve::Arc { circle, .. } = piece.curve else {
+            return Err(format!(
+                "group \"raceway\" is straight from {} to {}; expected arcs of one circle",
+                place(piece.start),
+                place(piece.end)
+            ));
+        };
+        let first = *arc.get_or_insert(circle);
+        let apart = (circle.centre_r - first.centre_r).hypot(circle.centre_z - first.centre_z);
+        if apart + (circle.radius - first.radius).abs() > 10.0 * tolerance {
+            return Err(format!(
+                "group \"raceway\" has arcs of {:.4} mm about {} and of {:.4} mm about {}; expected arcs of one circle",
+                1e3 * first.radius,
+                place([first.centre_r, first.centre_z]),
+                1e3 * circle.radius,
+                place([circle.centre_r, circle.centre_z])
+            ));
+        }
+    }
+    Ok(arc.expect("a raceway has pieces"))
 }
 
 fn place([r, z]: [f64; 2]) -> String {

@@ -43,6 +43,20 @@ pub(super) fn surface(ring: &RingModel) -> impl Iterator<Item = Facet> + '_ {
     facets.into_iter().flatten().copied()
 }
 
+/// Nodes whose positions a part has: those of its `own` sectors, at the surfaces that are met, and `more`, growing.
+fn kept_nodes(ring: &RingModel, own: &[Vec<u32>], more: &[usize]) -> Vec<u32> {
+    let mesh = &ring.mesh;
+    let mut is_kept = vec![false; mesh.n_nodes()];
+    let at_surface = surface(ring).flat_map(|facet| mesh.facet_nodes(facet));
+    let inside = own.iter().flatten().map(|&node| node as usize);
+    let kept = at_surface.chain(inside).chain(more.iter().copied());
+    kept.for_each(|node| is_kept[node] = true);
+    (0..mesh.n_nodes())
+        .filter(|&node| is_kept[node])
+        .map(small)
+        .collect()
+}
+
 impl RingPart {
     /// The part of one rank of a ring that is whole here and was cut, with the positions of the nodes `more` besides.
     pub(super) fn new(
@@ -70,18 +84,7 @@ impl RingPart {
             let kept = facets.iter().filter_map(facet).collect();
             (name.clone(), kept)
         });
-        let mut is_kept = vec![false; mesh.n_nodes()];
-        let at_surface = surface(ring).flat_map(|facet| mesh.facet_nodes(facet));
-        let inside = cut.nodes[owned.clone()]
-            .iter()
-            .flatten()
-            .map(|&node| node as usize);
-        let kept = at_surface.chain(inside).chain(more.iter().copied());
-        kept.for_each(|node| is_kept[node] = true);
-        let kept: Vec<u32> = (0..mesh.n_nodes())
-            .filter(|&node| is_kept[node])
-            .map(small)
-            .collect();
+        let kept = kept_nodes(ring, &cut.nodes[owned.clone()], more);
         let ring_elements = match rank {
             0 => cut
                 .elements

@@ -34,6 +34,19 @@ pub struct RingDefect {
     bytes: usize,
 }
 
+/// A defect is solved as one if so many nodes are few, that it touches and that are gone; else the reason.
+fn require_small(n_present: usize, n_gone: usize) -> Result<(), String> {
+    for (n, what) in [(n_present, "touches"), (n_gone, "lacks")] {
+        if 3 * n > MOST_ROWS {
+            return Err(format!(
+                "it is periodic up to a defect that {what} {} dofs, more than {MOST_ROWS}",
+                3 * n
+            ));
+        }
+    }
+    Ok(())
+}
+
 impl RingDefect {
     /// The defect between a ring and its regular one; None when there is none. The inner error says why it cannot be
     /// solved as one.
@@ -64,13 +77,8 @@ impl RingDefect {
         }
         let n_present = nodes.partition_point(|&node| node < n_nodes);
         let n_gone = nodes.len() - n_present + regular.held_besides.len();
-        for (n, what) in [(n_present, "touches"), (n_gone, "lacks")] {
-            if 3 * n > MOST_ROWS {
-                return Ok(Err(format!(
-                    "it is periodic up to a defect that {what} {} dofs, more than {MOST_ROWS}",
-                    3 * n
-                )));
-            }
+        if let Err(reason) = require_small(n_present, n_gone) {
+            return Ok(Err(reason));
         }
         // Absent nodes belong to no element of the true ring, so their places there mean nothing.
         let mut placed = regular.mesh.nodes.to_vec();

@@ -149,13 +149,8 @@ impl Pass<'_> {
             self.begin_if_shared(&mut solved);
         }
         let state = RingState::new(w, v, a);
-        let mut energies = total(&found, |f| f.energies).map(|twice| 0.5 * twice);
-        let rows = space.defect.as_ref().map(|defect| {
-            let rows = defect.of_state(&state);
-            let more = space.defect_energies(defect, state.displacement(), &rows);
-            energies = [energies[0] + more[0], energies[1] + more[1]];
-            rows
-        });
+        let energies = total(&found, |f| f.energies).map(|twice| 0.5 * twice);
+        let (energies, rows) = self.with_defect(&state, energies);
         PassEnd {
             state,
             energies,
@@ -167,6 +162,16 @@ impl Pass<'_> {
                 inertia: guess,
             }),
         }
+    }
+
+    /// The energies of a state with those of the defect, and the rows of the defect in the state.
+    fn with_defect(&self, state: &RingState, energies: [f64; 2]) -> ([f64; 2], Option<RowValues>) {
+        let Some(defect) = &self.space.defect else {
+            return (energies, None);
+        };
+        let rows = defect.of_state(state);
+        let more = self.space.defect_energies(defect, state.displacement(), &rows);
+        ([energies[0] + more[0], energies[1] + more[1]], Some(rows))
     }
 
     /// The answer of a ring in the state `state` to the known loads of a step from there.

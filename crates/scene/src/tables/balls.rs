@@ -96,23 +96,7 @@ impl RawBalls {
                  \"average_acceleration\"",
             );
         }
-        for (name, why) in REPLACED_BY_FREE_BALLS
-            .iter()
-            .filter(|(name, _)| names.contains(name))
-        {
-            problems.add(format!(
-                "[effects.{name}] stands beside balls.motion = \"free\", but {why}; remove it"
-            ));
-        }
-        let unknown = NOT_BESIDE
-            .iter()
-            .filter(|name| context.is_dynamic && names.contains(name));
-        for name in unknown {
-            problems.add(format!(
-                "[effects.{name}] stands beside balls.motion = \"free\", which is not computed; remove it, or use \
-                 balls.motion = \"kinematic\""
-            ));
-        }
+        refuse_effects(&names, context.is_dynamic, problems);
         if context.has_ball_speeds {
             problems.add(
                 "speed.ball_speeds stands beside balls.motion = \"free\", but the speeds of free balls are results; \
@@ -120,5 +104,26 @@ impl RawBalls {
             );
         }
         self.motion
+    }
+}
+
+/// Reports effects that free balls replace, or that motion does not compute beside them.
+fn refuse_effects(names: &[&str], is_dynamic: bool, problems: &mut Problems) {
+    for (name, why) in REPLACED_BY_FREE_BALLS
+        .iter()
+        .filter(|(name, _)| names.contains(name))
+    {
+        problems.add(format!(
+            "[effects.{name}] stands beside balls.motion = \"free\", but {why}; remove it"
+        ));
+    }
+    let unknown = NOT_BESIDE
+        .iter()
+        .filter(|name| is_dynamic && names.contains(name));
+    for name in unknown {
+        problems.add(format!(
+            "[effects.{name}] stands beside balls.motion = \"free\", which is not computed; remove it, or use \
+             balls.motion = \"kinematic\""
+        ));
     }
 }

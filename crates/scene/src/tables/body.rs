@@ -9,12 +9,14 @@ use std::path::{Path, PathBuf};
 use assembly::Orientation;
 use body::SeatBasis;
 use body::matrix::MatrixFiles;
-use input::{KINDS, LENGTH, MASS, Problems, Quantity, RATE, STIFFNESS, parse_unit};
+use input::{LENGTH, MASS, Problems, Quantity, RATE, STIFFNESS};
 use serde::Deserialize;
 
 use super::materials::{Material, RawMaterial};
-use super::ring::{MeshFiles, RingName, Support};
+use super::ring::{MeshFiles, Support};
+use super::ring_name::RingName;
 use super::solver::Backend;
+use super::unit_key::unit_of;
 
 /// Orders round a seat without a word.
 const HARMONICS: i64 = 12;
@@ -247,36 +249,7 @@ impl RawSceneBody {
             format!("{:?}", self.name),
             "expected a name of 1 to 64 letters",
         );
-        let source = match (&self.mesh, &self.stiffness) {
-            (Some(_), Some(_)) => {
-                problems.add(format!("{key} has both mesh and stiffness; keep one of them"));
-                None
-            }
-            (None, None) => {
-                problems.add(format!(
-                    "{key} has neither mesh nor stiffness; add mesh, mesh_unit, material and fixed, or stiffness, \
-                     nodes and seat_nodes of another program"
-                ));
-                None
-            }
-            (Some(mesh), None) => {
-                if self.mass.is_some() || self.mass_unit.is_some() {
-                    problems.add(format!(
-                        "{key} has a mesh, whose mass follows from its density; remove mass and mass_unit"
-                    ));
-                }
-                self.check_mesh(&key, mesh, context, problems, assumed)
-            }
-            (None, Some(_)) => {
-                if ring == RingName::Inner {
-                    problems.add(format!(
-                        "{key} carries the inner ring and comes from a stiffness matrix, of which nothing says how it \
-                         moves with the shaft; give it as a mesh"
-                    ));
-                }
-                self.check_matrix(&key, context, problems)
-            }
-        };
+        let source = self.check_source(&key, ring, context, (problems, assumed));
         let typed = self.orientation.as_deref().unwrap_or(Orientation::PlusZ.name());
         let orientation = Orientation::named(typed);
         problems.require(
@@ -303,6 +276,46 @@ impl RawSceneBody {
             group: seat.group.clone().unwrap_or_default(),
             z: seat.z.as_ref().map(Quantity::si),
         })
+    }
+
+    /// Of what its stiffness and mass are made: of one mesh, or of matrices.
+    fn check_source(
+        &self,
+        key: &str,
+        ring: RingName,
+        context: &BodyContext<'_>,
+        (problems, assumed): (&mut Problems, &mut Vec<String>),
+    ) -> Option<BodySource> {
+        match (&self.mesh, &self.stiffness) {
+            (Some(_), Some(_)) => {
+                problems.add(format!("{key} has both mesh and stiffness; keep one of them"));
+                None
+            }
+            (None, None) => {
+                problems.add(format!(
+                    "{key} has neither mesh nor stiffness; add mesh, mesh_unit, material and fixed, or stiffness, \
+                     nodes and seat_nodes of another program"
+                ));
+                None
+            }
+            (Some(mesh), None) => {
+                if self.mass.is_some() || self.mass_unit.is_some() {
+                    problems.add(format!(
+                        "{key} has a mesh, whose mass follows from its density; remove mass and mass_unit"
+                    ));
+                }
+                self.check_mesh(key, mesh, context, problems, assumed)
+            }
+            (None, Some(_)) => {
+                if ring == RingName::Inner {
+                    problems.add(format!(
+                        "{key} carries the inner ring and comes from a stiffness matrix, of which nothing says how it \
+                         moves with the shaft; give it as a mesh"
+                    ));
+                }
+                self.check_matrix(key, context, problems)
+            }
+        }
     }
 
     /// Frequency up to which the modes of a moving body are kept, Hz.
@@ -426,9 +439,8 @@ impl RawSceneBody {
         let stiffness = path("stiffness", &self.stiffness);
         let nodes = path("nodes", &self.nodes);
         let seat_nodes = path("seat_nodes", &self.seat_nodes);
-        let fixed_nodes = self.fixed_nodes.as_ref();
-        let fixed_nodes =
-            fixed_nodes.map(|text| file(&format!("{key}: fixed_nodes"), text, context, problems));
+        let own = |text: &String| file(&format!("{key}: fixed_nodes"), text, context, problems);
+        let fixed_nodes = self.fixed_nodes.as_ref().map(own);
         let length = self.length_unit.as_deref();
         let length = unit_of(&format!("{key}: length_unit"), length, (LENGTH, "mm"), problems);
         let unit = self.stiffness_unit.as_deref();
@@ -438,8 +450,8 @@ impl RawSceneBody {
             (STIFFNESS, "N/mm"),
             problems,
         );
-        let mass = self.mass.as_ref();
-        let mass = mass.map(|text| file(&format!("{key}: mass"), text, context, problems));
+        let own = |text: &String| file(&format!("{key}: mass"), text, context, problems);
+        let mass = self.mass.as_ref().map(own);
         let mass = match (mass, self.mass_unit.as_deref()) {
             (None, None) => None,
             (None, Some(_)) => {
@@ -475,19 +487,4 @@ fn file(key: &str, typed: &str, context: &BodyContext<'_>, problems: &mut Proble
         ));
     }
     path
-}
-
-/// The SI value of a unit that a scene must state.
-fn unit_of(
-    key: &str,
-    typed: Option<&str>,
-    (kind, example): (usize, &str),
-    problems: &mut Problems,
-) -> Option<f64> {
-    let Some(typed) = typed else {
-        problems.add(format!("{key} is missing; expected a unit such as {example:?}"));
-        return None;
-    };
-    let unit = parse_unit(typed, &KINDS[kind]);
-    unit.map_err(|error| problems.add(format!("{key}: {error}"))).ok()
 }

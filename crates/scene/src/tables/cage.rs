@@ -115,17 +115,7 @@ impl RawCage {
             0.5 * bearing.ball_diameter,
             problems,
         );
-        let keys = PocketKeys {
-            stiffness: self.pocket_stiffness.as_ref(),
-            young_modulus: self.young_modulus.as_ref(),
-            poisson_ratio: self.poisson_ratio,
-        };
-        let fit = clearance.zip(ball).map(|(clearance, material)| PocketFit {
-            diameter: bearing.ball_diameter,
-            clearance,
-            material,
-        });
-        let stiffness = keys.check(fit, problems);
+        let stiffness = self.stiffness(clearance.zip(ball), bearing.ball_diameter, problems);
         let [friction, restitution] = self.coefficients(problems);
         let offsets = self.offsets(bearing, problems);
         let land = self.land(tube, problems);
@@ -141,6 +131,26 @@ impl RawCage {
             friction: friction?,
             land: land?,
         })
+    }
+
+    /// Stiffness of a pocket of this clearance, m, with a ball of this material and diameter, m.
+    fn stiffness(
+        &self,
+        pocket: Option<(f64, &Material)>,
+        diameter: f64,
+        problems: &mut Problems,
+    ) -> Option<f64> {
+        let keys = PocketKeys {
+            stiffness: self.pocket_stiffness.as_ref(),
+            young_modulus: self.young_modulus.as_ref(),
+            poisson_ratio: self.poisson_ratio,
+        };
+        let fit = pocket.map(|(clearance, material)| PocketFit {
+            diameter,
+            clearance,
+            material,
+        });
+        keys.check(fit, problems)
     }
 
     /// The cage as a tube, if its dimensions are given; they must hold the pitch circle between them.

@@ -14,7 +14,7 @@ use std::f64::consts::TAU;
 use input::{ANGLE, LENGTH, Problems, Quantity};
 use serde::Deserialize;
 
-use super::ring::RingName;
+use super::ring_name::RingName;
 
 /// As typed.
 #[derive(Debug, Deserialize)]

@@ -7,7 +7,7 @@ use serde::Deserialize;
 
 use super::bearing::Bearing;
 use super::profile_place::{RawAngle, RawBody, RawPlace, WornBody};
-use super::ring::RingName;
+use super::ring_name::RingName;
 
 /// As typed.
 #[derive(Debug, Deserialize)]

@@ -7,7 +7,8 @@ use contact::surface::Heights;
 use serde::Deserialize;
 
 use super::profile_place::WornBody;
-use super::ring::{MeshFiles, RingName};
+use super::ring::MeshFiles;
+use super::ring_name::RingName;
 
 /// Largest height, m: more is no surface but another groove.
 const MAX_TABLE_HEIGHT: f64 = 0.1e-3;
@@ -70,18 +71,7 @@ fn heights(text: &str, body: WornBody) -> Result<Heights, String> {
     }
     let mut rows: BTreeMap<u64, BTreeMap<u64, f64>> = BTreeMap::new();
     for (line, number) in lines {
-        let cells: Vec<Option<f64>> = line.split(',').map(|cell| cell.trim().parse().ok()).collect();
-        let [Some(azimuth), Some(angle), Some(height)] = cells[..] else {
-            return Err(format!("line {number} is {line:?}; expected three numbers"));
-        };
-        let most = 1e6 * MAX_TABLE_HEIGHT;
-        let is_sane = (0.0..360.0).contains(&azimuth) && angle.abs() < 90.0 && height.abs() <= most;
-        if !is_sane {
-            return Err(format!(
-                "line {number} is {line:?}; expected {article} {along} from 0 to below 360 deg, a {across} between -90 \
-                 and 90 deg and a height of at most 100 um"
-            ));
-        }
+        let [azimuth, angle, height] = point_of((line, number), [article, along, across])?;
         let row = rows.entry(ordered(azimuth)).or_default();
         if row.insert(ordered(angle), 1e-6 * height).is_some() {
             return Err(format!(
@@ -110,6 +100,23 @@ fn heights(text: &str, body: WornBody) -> Result<Heights, String> {
         angles: angles.iter().map(|angle| value(*angle).to_radians()).collect(),
         heights: rows.values().flat_map(|row| row.values().copied()).collect(),
     })
+}
+
+/// The two angles, deg, and the height, um, of a numbered line, in the range of these words.
+fn point_of((line, number): (&str, usize), [article, along, across]: [&str; 3]) -> Result<[f64; 3], String> {
+    let cells: Vec<Option<f64>> = line.split(',').map(|cell| cell.trim().parse().ok()).collect();
+    let [Some(azimuth), Some(angle), Some(height)] = cells[..] else {
+        return Err(format!("line {number} is {line:?}; expected three numbers"));
+    };
+    let most = 1e6 * MAX_TABLE_HEIGHT;
+    let is_sane = (0.0..360.0).contains(&azimuth) && angle.abs() < 90.0 && height.abs() <= most;
+    if !is_sane {
+        return Err(format!(
+            "line {number} is {line:?}; expected {article} {along} from 0 to below 360 deg, a {across} between -90 \
+             and 90 deg and a height of at most 100 um"
+        ));
+    }
+    Ok([azimuth, angle, height])
 }
 
 /// A whole number in the order of the numbers.

@@ -144,16 +144,7 @@ fn describe(text: &str, span: Range<usize>, message: &str) -> String {
         .replace("integer number overflowed", WHOLE_RANGE)
         .replace("wanted string or table", "expected a string");
     let Ok(document) = DeTable::parse(text) else {
-        let line = text[..floor_boundary(text, span.start)].matches('\n').count();
-        let hint = text.lines().nth(line).and_then(hints::of_syntax);
-        let repeated = hints::first_of(text, line + 1).filter(|_| message.contains("duplicate key"));
-        return match hint {
-            _ if let Some(first) = repeated => {
-                format!("this is not TOML: {message}; it stands in line {first} too")
-            }
-            Some(hint) => format!("this is not TOML: {message}; {hint}"),
-            None => format!("this is not TOML: {message}"),
-        };
+        return not_toml(text, span.start, &message);
     };
     let path = match span == document.span() {
         true => String::new(),
@@ -197,6 +188,20 @@ fn describe(text: &str, span: Range<usize>, message: &str) -> String {
         message
     } else {
         format!("{path}: {message}")
+    }
+}
+
+/// The message on a text that is no TOML from the byte `at` on, with a hint where there is one.
+fn not_toml(text: &str, at: usize, message: &str) -> String {
+    let line = text[..floor_boundary(text, at)].matches('\n').count();
+    let hint = text.lines().nth(line).and_then(hints::of_syntax);
+    let repeated = hints::first_of(text, line + 1).filter(|_| message.contains("duplicate key"));
+    match hint {
+        _ if let Some(first) = repeated => {
+            format!("this is not TOML: {message}; it stands in line {first} too")
+        }
+        Some(hint) => format!("this is not TOML: {message}; {hint}"),
+        None => format!("this is not TOML: {message}"),
     }
 }
 

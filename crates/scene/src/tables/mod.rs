@@ -74,6 +74,7 @@ mod random;
 pub mod reference;
 mod ring;
 mod ring_inertia;
+mod ring_name;
 mod section;
 mod several;
 mod shaft;
@@ -86,6 +87,7 @@ mod stress_probes;
 mod sweep;
 #[cfg(test)]
 mod tests;
+mod unit_key;
 
 use std::path::{Path, PathBuf};
 
@@ -119,8 +121,9 @@ pub use self::output::{
 pub use self::probes::{Axes, ContactProbe, NodeProbe, Probes, SectionPoint};
 pub use self::profiles::SurfaceProfiles;
 pub use self::quasi_static::QuasiStatic;
-pub use self::ring::{FlexibleRing, MeshFiles, Ring, RingName, Support};
+pub use self::ring::{FlexibleRing, MeshFiles, Ring, Support};
 pub use self::ring_inertia::RingInertia;
+pub use self::ring_name::RingName;
 pub use self::section::{Section, SectionElement};
 pub use self::several::{
     AnyScene, BearingOnShaft, CommonShaft, ON_SHAFT, Pairing, RigidShaft, SeveralScene, ShaftKind, ShaftLoad,
@@ -146,14 +149,14 @@ use self::materials::RawMaterials;
 use self::messages::Messages;
 use self::modes::{ModesContext, RawModes};
 use self::output::RawOutput;
-use self::probes::{ProbesContext, RawProbes};
+use self::probes::RawProbes;
 use self::profiles::RawProfiles;
 use self::quasi_static::RawQuasiStatic;
 use self::ring::{RawRing, RingContext};
 use self::shaft::RawShaft;
 use self::solver::RawSolver;
 use self::speed::RawSpeed;
-use self::stress::{RawStress, StressContext};
+use self::stress::RawStress;
 use self::sweep::{RawStatic, RawSweep};
 use input::Problems;
 
@@ -262,34 +265,8 @@ pub struct Scene {
 }
 
 impl Scene {
-    /// Reads and checks a scene file; `overrides` are `path=value`. Mesh files must exist.
-    pub fn load(path: &Path, overrides: &[String]) -> Result<Scene, SceneError> {
-        Scene::load_with(path, overrides, MeshFiles::MustExist)
-    }
-
-    /// Reads and checks a scene file; `mesh_files` says whether the meshes have to be there already.
-    pub fn load_with(path: &Path, overrides: &[String], mesh_files: MeshFiles) -> Result<Scene, SceneError> {
-        let text = std::fs::read_to_string(path).map_err(|error| SceneError::unreadable(path, &error))?;
-        Scene::parse(&text, path, overrides, mesh_files)
-    }
-
-    /// Checks the text of a scene; `path` is for messages and its folder is where relative paths start. A list of
-    /// bearings is no such scene, unless it has one bearing and says no more than one table does.
-    pub fn parse(
-        text: &str,
-        path: &Path,
-        overrides: &[String],
-        mesh_files: MeshFiles,
-    ) -> Result<Scene, SceneError> {
-        match AnyScene::parse(text, path, overrides, mesh_files)? {
-            AnyScene::One(scene) => Ok(*scene),
-            AnyScene::Several(_) => Err(SceneError::Several {
-                path: path.to_path_buf(),
-            }),
-        }
-    }
-
-    /// The same of a text whose bearing is a table.
+    /// Checks the text of a scene whose bearing is a table; `path` is for messages and its folder is where relative
+    /// paths start.
     fn parse_one(
         text: &str,
         path: &Path,
@@ -329,7 +306,7 @@ impl Scene {
         let Analysis::Sweep(sweep) = &self.analysis else {
             return Ok(Vec::new());
         };
-        let point = |p: &SweepPoint| Scene::parse(&p.text, &self.path, &[], MeshFiles::MayBeMissing);
+        let point = |p: &SweepPoint| Scene::parse_one(&p.text, &self.path, &[], MeshFiles::MayBeMissing);
         sweep.points.iter().map(point).collect()
     }
 }
@@ -360,71 +337,26 @@ impl Source<'_> {
         let mut assumed = Vec::new();
         let bearing = raw.bearing.check(&mut problems, &mut assumed);
         let materials = raw.materials.check(&mut problems, &mut assumed);
-        let mut contact = raw.contact.check(
-            bearing.as_ref(),
-            materials.as_ref(),
-            raw.moving_balls(),
-            &mut problems,
-        );
-        let surfaces = raw.surfaces_context(bearing.as_ref(), self.path, self.mesh_files);
-        let diameters = raw.bearing.ball_diameters.as_ref();
-        let profiles = raw
-            .profiles
-            .check(diameters, surfaces, &mut contact, &mut problems);
-        let context = RingContext {
-            bearing: bearing.as_ref(),
-            density: materials.as_ref().map(|m| m.rings.density),
-            mode: contact.mode,
-            scene: self.path,
-            overridden: !self.overrides.is_empty(),
-            mesh_files: self.mesh_files,
-        };
-        let inner = raw
-            .inner
-            .check(RingName::Inner, context, &mut problems, &mut assumed);
-        let outer = raw
-            .outer
-            .check(RingName::Outer, context, &mut problems, &mut assumed);
-        // Without a sound bearing shoulders have no size.
-        if let (Some(inner), Some(outer), Some(_)) = (&inner.section, &outer.section, &bearing) {
-            section::check_gap(inner, outer, &mut problems);
-        }
+        let known = (bearing.as_ref(), materials.as_ref());
+        let (contact, profiles) = self.contacts(&raw, known, &mut problems);
+        let [inner, outer] = self.rings(&raw, known, contact.mode, (&mut problems, &mut assumed));
+        let flexible = [inner.body.is_some(), outer.body.is_some()];
         let shaft = raw.shaft.check(bearing.as_ref(), raw.clock(), &mut problems);
-        let effects = &raw.effects;
-        effects.check(
-            raw.effects_context(
-                [inner.body.is_some(), outer.body.is_some()],
-                bearing.as_ref(),
-                materials.as_ref(),
-            ),
-            &mut problems,
-        );
+        let context = raw.effects_context(flexible, bearing.as_ref(), materials.as_ref());
+        raw.effects.check(context, &mut problems);
         let balls = raw.balls.check(raw.balls_context(), &mut problems);
         let cage = raw.cage(balls, bearing.as_ref(), materials.as_ref(), &mut problems);
-        let speed = raw.speed.as_ref();
-        let ball_speeds = speed.map_or(BallSpeeds::default(), |s| s.ball_speeds(effects, &mut problems));
-        let speed = speed.and_then(|s| s.check(raw.speed_use(), &mut problems));
+        let (speed, ball_speeds) = raw.speeds(&mut problems);
         let has_speed = raw.has_speed();
         let solver = raw.solver.check(&mut problems);
         let bodies = raw.bodies(self, solver.backend, &mut problems, &mut assumed);
-        let output = raw.output_context([inner.body.is_some(), outer.body.is_some()]);
-        let output = raw.output.check(output, &mut problems);
-        let stress = StressContext {
-            contact: contact.mode,
-            is_modes: raw.modes.is_some(),
-        };
-        let stress = raw.stress.check(stress, &mut problems);
-        let rigid = [raw.inner.is_rigid(), raw.outer.is_rigid()];
-        let probes = ProbesContext::new(bearing.as_ref(), rigid, has_speed);
-        let probes = raw.probes.check(probes, &mut problems);
+        let output = raw.output.check(raw.output_context(flexible), &mut problems);
+        let stress = raw.stress_of(contact.mode, &mut problems);
+        let probes = raw.probes_of(bearing.as_ref(), &mut problems);
         let lubricant = raw.lubricant(raw.speed.is_some() && raw.modes.is_none(), &mut problems);
         let life = raw.life(&mut problems);
         let heat = raw.heat(&mut problems);
-        let modes = ModesContext {
-            flexible: [inner.body.is_some(), outer.body.is_some()],
-            contact: contact.mode,
-            backend: solver.backend,
-        };
+        let modes = ModesContext::new(flexible, contact.mode, solver.backend);
         let analysis = raw.analysis(document, (&shaft, modes), &mut problems);
         match (bearing, materials, analysis, problems.into_texts()) {
             (Some(bearing), Some(materials), Some(analysis), texts) if texts.is_empty() => Ok(Scene {
@@ -460,6 +392,47 @@ impl Source<'_> {
         }
     }
 
+    /// How balls and raceways push on each other, on which surfaces.
+    fn contacts(
+        &self,
+        raw: &RawScene,
+        (bearing, materials): (Option<&Bearing>, Option<&Materials>),
+        problems: &mut Problems,
+    ) -> (Contact, SurfaceProfiles) {
+        let mut contact = raw
+            .contact
+            .check(bearing, materials, raw.moving_balls(), problems);
+        let surfaces = raw.surfaces_context(bearing, self.path, self.mesh_files);
+        let diameters = raw.bearing.ball_diameters.as_ref();
+        let profiles = raw.profiles.check(diameters, surfaces, &mut contact, problems);
+        (contact, profiles)
+    }
+
+    /// The rings, inner first.
+    fn rings(
+        &self,
+        raw: &RawScene,
+        (bearing, materials): (Option<&Bearing>, Option<&Materials>),
+        mode: ContactMode,
+        (problems, assumed): (&mut Problems, &mut Vec<String>),
+    ) -> [Ring; 2] {
+        let context = RingContext {
+            bearing,
+            density: materials.map(|m| m.rings.density),
+            mode,
+            scene: self.path,
+            overridden: !self.overrides.is_empty(),
+            mesh_files: self.mesh_files,
+        };
+        let inner = raw.inner.check(RingName::Inner, context, problems, assumed);
+        let outer = raw.outer.check(RingName::Outer, context, problems, assumed);
+        // Without a sound bearing shoulders have no size.
+        if let (Some(inner), Some(outer), Some(_)) = (&inner.section, &outer.section, bearing) {
+            section::check_gap(inner, outer, problems);
+        }
+        [inner, outer]
+    }
+
     /// Every point of a sweep must be a valid scene before the first is solved.
     fn check_points(&self, scene: &Scene) -> Result<(), SceneError> {
         let Analysis::Sweep(sweep) = &scene.analysis else {
@@ -467,7 +440,7 @@ impl Source<'_> {
         };
         let mut problems = Vec::new();
         for (i, point) in sweep.points.iter().enumerate() {
-            let error = match Scene::parse(&point.text, self.path, &[], MeshFiles::MayBeMissing) {
+            let error = match Scene::parse_one(&point.text, self.path, &[], MeshFiles::MayBeMissing) {
                 Ok(_) => continue,
                 Err(SceneError::Invalid { problems, .. }) => problems.join("; "),
                 Err(SceneError::Format { message, .. }) => {

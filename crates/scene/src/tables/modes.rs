@@ -64,6 +64,17 @@ pub struct ModesContext {
     pub backend: Backend,
 }
 
+impl ModesContext {
+    /// What modes need to know of rings that are elastic or not, inner first.
+    pub fn new(flexible: [bool; 2], contact: ContactMode, backend: Backend) -> ModesContext {
+        ModesContext {
+            flexible,
+            contact,
+            backend,
+        }
+    }
+}
+
 /// Every mode is a step file.
 const MAX_NUMBER: i64 = 1000;
 /// Shifts beyond this are slips of the unit, 1/s.
@@ -84,7 +95,7 @@ impl RawModes {
     /// Checks numbers, and that the bodies have modes; `None` when there are problems.
     pub fn check(&self, context: ModesContext, problems: &mut Problems) -> Option<Modes> {
         let before = problems.len();
-        if context.backend == Backend::Sector {
+        if context.backend.divides_rings() {
             problems.add(
                 "solver.backend is \"sector\", but the search for modes has no sectors; expected \"auto\", \"cyclic\" \
                  or \"sparse\" with [modes]",

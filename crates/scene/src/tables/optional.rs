@@ -2,16 +2,20 @@
 //! computes, for lubrication, life and heat.
 
 use dynamics::interactions::cage::Cage;
+use dynamics::kinematics::{BallSpeeds, RingSpeeds};
 use input::Problems;
 
 use super::balls::BallMotion;
 use super::bearing::Bearing;
 use super::body::{BodyContext, SceneBody, check_bodies};
+use super::contact::ContactMode;
 use super::heat::Heat;
 use super::life::Life;
 use super::lubricant::Lubrication;
 use super::materials::Materials;
+use super::probes::{Probes, ProbesContext};
 use super::solver::Backend;
+use super::stress::{Stress, StressContext};
 use super::{RawScene, Source};
 
 impl RawScene {
@@ -48,6 +52,26 @@ impl RawScene {
             effects: self.effects.names(),
         };
         check_bodies(&self.body, &context, problems, assumed)
+    }
+
+    /// Speeds of the rings, and the contact angles that those of the balls follow.
+    pub(super) fn speeds(&self, problems: &mut Problems) -> (Option<RingSpeeds>, BallSpeeds) {
+        let speed = self.speed.as_ref();
+        let balls = speed.map_or(BallSpeeds::default(), |s| s.ball_speeds(&self.effects, problems));
+        (speed.and_then(|s| s.check(self.speed_use(), problems)), balls)
+    }
+
+    /// How stress is computed with contacts of this mode.
+    pub(super) fn stress_of(&self, contact: ContactMode, problems: &mut Problems) -> Stress {
+        let is_modes = self.modes.is_some();
+        self.stress.check(StressContext { contact, is_modes }, problems)
+    }
+
+    /// Single numbers that are written at every step.
+    pub(super) fn probes_of(&self, bearing: Option<&Bearing>, problems: &mut Problems) -> Probes {
+        let rigid = [self.inner.is_rigid(), self.outer.is_rigid()];
+        let context = ProbesContext::new(bearing, rigid, self.has_speed());
+        self.probes.check(context, problems)
     }
 
     /// What lubricates the contacts; `turns`: whether a speed rolls them.

@@ -26,7 +26,7 @@ use serde::Deserialize;
 
 use super::bearing::Bearing;
 use super::gauges::{GaugeProbe, RawGauge, RawTachometer, Tachometer};
-use super::ring::RingName;
+use super::ring_name::RingName;
 use super::stress_probes::{RawPointProbe, RawProfile, StressLine};
 
 /// As typed.

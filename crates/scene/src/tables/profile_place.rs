@@ -4,7 +4,7 @@ use contact::surface::ball::MOST_LATITUDE;
 use input::{ANGLE, Problems, Quantity};
 
 use super::bearing::Bearing;
-use super::ring::RingName;
+use super::ring_name::RingName;
 
 /// What has a profile.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -20,7 +20,8 @@ use super::dent::RawDent;
 use super::heights::RawHeights;
 use super::profile_place::{RawAngle, RawBody, RawPlace, WornBody};
 use super::random::SplitMix64;
-use super::ring::{MeshFiles, RingName};
+use super::ring::MeshFiles;
+use super::ring_name::RingName;
 
 /// As typed.
 #[derive(Debug, Default, Deserialize)]

@@ -9,6 +9,7 @@ use super::bearing::Bearing;
 use super::contact::ContactMode;
 use super::cut::{Cut, RawCut};
 use super::ring_inertia::{self, InertiaSource, RingInertia};
+use super::ring_name::RingName;
 use super::section::{RawSection, Section};
 
 /// As typed.
@@ -29,34 +30,6 @@ pub struct RawRing {
 
 /// How a surface may be held, for messages.
 const SUPPORTS: &str = "\"clamped\" or \"mean_motion\", or \"body\" with a table [[body]]";
-
-/// Which of the two rings.
-#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq)]
-#[serde(rename_all = "snake_case")]
-pub enum RingName {
-    /// The ring on the shaft.
-    Inner,
-    /// The ring in the housing.
-    Outer,
-}
-
-impl RingName {
-    /// The table of the scene.
-    pub fn key(self) -> &'static str {
-        match self {
-            RingName::Inner => "inner",
-            RingName::Outer => "outer",
-        }
-    }
-
-    /// The surface that is held: the bore or the seat.
-    fn held_surface(self) -> &'static str {
-        match self {
-            RingName::Inner => "bore",
-            RingName::Outer => "seat",
-        }
-    }
-}
 
 /// How the bore follows the shaft, or the seat the housing.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq)]

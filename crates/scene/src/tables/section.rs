@@ -10,7 +10,7 @@ use mesh::{RingSection, RingSide};
 use serde::Deserialize;
 
 use super::bearing::Bearing;
-use super::ring::RingName;
+use super::ring_name::RingName;
 
 /// As typed.
 #[derive(Debug, Deserialize)]

@@ -32,6 +32,15 @@ impl Backend {
     pub fn divides_rings(self) -> bool {
         self == Backend::Sector
     }
+
+    /// What each of several ranks computes by itself, in words; None: they share all of it.
+    pub fn unshared(self) -> Option<&'static str> {
+        match self {
+            Backend::Sector | Backend::Cyclic => None,
+            Backend::Auto => Some("rings that are not rotationally periodic"),
+            Backend::Sparse => Some("the whole run"),
+        }
+    }
 }
 
 /// How the equations are solved.

@@ -11,7 +11,7 @@ use std::f64::consts::FRAC_PI_2;
 use input::{ANGLE, LENGTH, Problems, Quantity};
 use serde::Deserialize;
 
-use super::ring::RingName;
+use super::ring_name::RingName;
 
 /// As typed.
 #[derive(Debug, Deserialize)]

@@ -217,6 +217,22 @@ struct BlockPlace<'a> {
     columns: &'a [u32],
 }
 
+/// Each column once, ascending.
+fn distinct(mut columns: Vec<u32>) -> Vec<u32> {
+    columns.sort_unstable();
+    columns.dedup();
+    columns
+}
+
+/// The block of each panel of a piece; [`NONE`] where no column reaches it.
+fn blocks_of_panels(piece: &Piece, blocks: &[Block]) -> Vec<u32> {
+    let mut block_of = vec![NONE; piece.panels.len()];
+    for (k, block) in blocks.iter().enumerate() {
+        block_of[block.panel - piece.panels.start] = k as u32;
+    }
+    block_of
+}
+
 /// Forward solutions in one piece, and what they add to the top.
 fn eliminate(
     tree: &Tree,
@@ -230,13 +246,8 @@ fn eliminate(
     }
     let (blocks, n_values) = blocks(tree, piece, &reached);
     let columns: Vec<u32> = reached.iter().map(|pair| pair.1).collect();
-    let mut all = columns.clone();
-    all.sort_unstable();
-    all.dedup();
-    let mut block_of = vec![NONE; piece.panels.len()];
-    for (k, block) in blocks.iter().enumerate() {
-        block_of[block.panel - piece.panels.start] = k as u32;
-    }
+    let all = distinct(columns.clone());
+    let block_of = blocks_of_panels(piece, &blocks);
     let inside = piece.places.len();
     let target = |row: usize| {
         if row >= inside {
@@ -254,14 +265,13 @@ fn eliminate(
             columns: &columns[block.columns.clone()],
         }
     };
-    let mut values = vec![0.0; n_values + all.len() * piece.boundary.len()];
+    let (mut values, mut buffer) = (vec![0.0; n_values + all.len() * piece.boundary.len()], Vec::new());
     for &(column, place, value) in entries {
         add_rows(&mut values, target, &[column], &[place], &[value]);
     }
     for (boundary, sums) in sums.iter().filter(|(_, sums)| !sums.columns.is_empty()) {
         add_rows(&mut values, target, &sums.columns, boundary, &sums.values);
     }
-    let mut buffer = Vec::new();
     for block in &blocks {
         let own = &columns[block.columns.clone()];
         let n_own = block.places.len() * own.len();

@@ -9,7 +9,7 @@ use serde::Deserialize;
 
 use super::context::OutputContext;
 use super::every::KeptFields;
-use crate::tables::ring::RingName;
+use crate::tables::ring_name::RingName;
 
 /// As typed.
 #[derive(Debug, Default, Deserialize)]

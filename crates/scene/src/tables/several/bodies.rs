@@ -8,7 +8,7 @@ use input::Problems;
 use serde::Deserialize;
 use toml_edit::{ArrayOfTables, DocumentMut, Item, Table};
 
-use crate::tables::ring::RingName;
+use crate::tables::ring_name::RingName;
 
 /// Key of a seat, of the list alone.
 const BEARING: &str = "bearing";

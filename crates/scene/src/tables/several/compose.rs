@@ -13,14 +13,13 @@ use toml_edit::{DocumentMut, Item, Table, Value};
 
 use super::super::messages::Messages;
 use super::super::ring::MeshFiles;
-use super::super::sweep::Analysis;
 use super::super::{Scene, SceneError, Source, edit, include};
 use super::bodies;
 use super::mounted::{BearingOnShaft, RawMounted, check_places};
 use super::pairing::Pairing;
 use super::shaft::{CommonShaft, ShaftKind};
 use super::turned::{turn_region, turn_speed, turn_speeds, turn_weight};
-use super::{AnyScene, ON_SHAFT, RawSeveral, SeveralScene, is_plain, set};
+use super::{OF_TYPE, ON_SHAFT, RawSeveral, SeveralScene, is_of_type, set};
 use crate::tables::shaft::Motion;
 
 /// Tables of the list that no bearing has, or that a list is refused with.
@@ -41,9 +40,6 @@ const OF_LIST: [&str; 15] = [
     "heat",
     "lubricant",
 ];
-/// Tables that a type file may have.
-const OF_TYPE: [&str; 5] = ["bearing", "materials", "contact", "inner", "outer"];
-
 /// What a list is made into scenes with.
 pub struct Composer<'a> {
     pub path: &'a Path,
@@ -54,32 +50,8 @@ pub struct Composer<'a> {
 }
 
 impl Composer<'_> {
-    /// The scene of a list, which `document` is before overrides.
-    pub fn several(&self, mut document: DocumentMut) -> Result<AnyScene, SceneError> {
-        let of_list = |o: &&String| !include::is_of_include(o) && !is_of_type(o);
-        for argument in self.overrides.iter().filter(of_list) {
-            apply(&mut document, argument)?;
-        }
-        let text = document.to_string();
-        let raw: RawSeveral = self.messages.read(&text)?;
-        let mut problems = Problems::default();
-        if is_plain(&raw) {
-            raw.bearing[0].check(1, &mut problems);
-            bodies::check(&raw.body, &raw.names(), &mut problems);
-            return match problems.into_texts() {
-                none if none.is_empty() => self
-                    .plain(&raw.bearing[0], document)
-                    .map(|s| AnyScene::One(Box::new(s))),
-                texts => Err(self.messages.invalid(texts)),
-            };
-        }
-        let scene = self.listed(raw, text, &document)?;
-        self.check_points(&scene)?;
-        Ok(AnyScene::Several(Box::new(scene)))
-    }
-
     /// The scene of a list of bearings, checked.
-    fn listed(
+    pub fn listed(
         &self,
         raw: RawSeveral,
         text: String,
@@ -154,33 +126,6 @@ impl Composer<'_> {
             },
             other => other,
         }
-    }
-
-    /// Every point of a sweep must be a valid scene before the first is solved.
-    fn check_points(&self, scene: &SeveralScene) -> Result<(), SceneError> {
-        let Analysis::Sweep(sweep) = &scene.analysis else {
-            return Ok(());
-        };
-        for (i, point) in sweep.points.iter().enumerate() {
-            let found = AnyScene::parse(
-                &point.text,
-                self.path,
-                &scene.type_overrides(),
-                MeshFiles::MayBeMissing,
-            );
-            if let Err(error) = found {
-                let reason = match error {
-                    SceneError::Invalid { problems, .. } => problems.join("; "),
-                    SceneError::Format { message, .. } => message,
-                    other => other.to_string(),
-                };
-                return Err(self.messages.invalid(vec![format!(
-                    "point {i} of the sweep ({} = {}): {reason}",
-                    sweep.column, point.value
-                )]));
-            }
-        }
-        Ok(())
     }
 
     /// The scene of every bearing that has one, and what is wrong with the others, each problem once.
@@ -265,7 +210,7 @@ impl Composer<'_> {
     }
 
     /// The scene with one table that a list of one bearing stands for.
-    fn plain(&self, bearing: &RawMounted, list: DocumentMut) -> Result<Scene, SceneError> {
+    pub fn plain(&self, bearing: &RawMounted, list: DocumentMut) -> Result<Scene, SceneError> {
         self.made(bearing, |document| {
             for name in OF_LIST.iter().filter(|name| **name != "bearing") {
                 if let Some(item) = list.get(name) {
@@ -410,7 +355,8 @@ fn check_loads(raw: &RawSeveral, problems: &mut Problems) {
     on_shaft.check(context, problems);
 }
 
-fn apply(document: &mut DocumentMut, argument: &str) -> Result<(), SceneError> {
+/// Applies a `--set` argument.
+pub fn apply(document: &mut DocumentMut, argument: &str) -> Result<(), SceneError> {
     edit::apply_override(document, argument).map_err(|reason| SceneError::Override {
         argument: argument.to_string(),
         reason,
@@ -431,12 +377,6 @@ fn copy_shared(list: &DocumentMut, document: &mut DocumentMut, left_out: &[&str]
         }
         document.insert(name, item);
     }
-}
-
-/// Whether a `--set` argument is of the type of the bearings.
-pub fn is_of_type(argument: &str) -> bool {
-    let root = argument.split(['.', '=']).next().unwrap_or_default().trim();
-    root != "bearing" && OF_TYPE.contains(&root)
 }
 
 /// Bearings lie on the shaft.

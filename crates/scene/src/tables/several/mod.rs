@@ -16,10 +16,11 @@ mod compose;
 mod load;
 mod mounted;
 mod pairing;
+mod read;
 mod shaft;
 mod turned;
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use dynamics::effects::Effects;
 use dynamics::kinematics::RingSpeeds;
@@ -29,22 +30,22 @@ use serde::de::IgnoredAny;
 use toml_edit::{DocumentMut, Item};
 
 use self::bodies::RawListedBody;
-use self::compose::Composer;
 pub use self::load::ShaftLoad;
 pub use self::mounted::BearingOnShaft;
 use self::mounted::RawMounted;
 use self::pairing::RawPairing;
 pub use self::pairing::{Pairing, SpringPairing};
+pub use self::read::AnyScene;
 use self::shaft::RawCommonShaft;
 pub use self::shaft::{CommonShaft, RigidShaft, ShaftKind};
 use super::dynamic::RawDynamic;
-use super::messages::Messages;
-use super::ring::MeshFiles;
+use super::edit;
 use super::sweep::{Analysis, RawStatic, RawSweep};
-use super::{Scene, SceneError, edit, include};
 
 /// Effects that load the shaft.
 pub const ON_SHAFT: [&str; 3] = ["axial_force", "moment", "radial_force"];
+/// Tables that a type file may have.
+const OF_TYPE: [&str; 5] = ["bearing", "materials", "contact", "inner", "outer"];
 /// Effects that act in every bearing.
 const IN_BEARINGS: [&str; 9] = [
     "ball_centrifugal",
@@ -130,95 +131,15 @@ pub struct SeveralScene {
     pub analysis: Analysis,
 }
 
-/// A scene of either kind.
-#[derive(Clone, Debug, PartialEq)]
-pub enum AnyScene {
-    /// With one bearing.
-    One(Box<Scene>),
-    /// With a list of bearings.
-    Several(Box<SeveralScene>),
-}
-
-impl AnyScene {
-    /// Reads and checks a scene file; `overrides` are `path=value`. Mesh files must exist.
-    pub fn load(path: &Path, overrides: &[String]) -> Result<AnyScene, SceneError> {
-        AnyScene::load_with(path, overrides, MeshFiles::MustExist)
-    }
-
-    /// Reads and checks a scene file; `mesh_files` says whether the meshes have to be there already.
-    pub fn load_with(
-        path: &Path,
-        overrides: &[String],
-        mesh_files: MeshFiles,
-    ) -> Result<AnyScene, SceneError> {
-        let text = std::fs::read_to_string(path).map_err(|error| SceneError::unreadable(path, &error))?;
-        AnyScene::parse(&text, path, overrides, mesh_files)
-    }
-
-    /// Checks the text of a scene; `path` is for messages and its folder is where relative paths start.
-    pub fn parse(
-        text: &str,
-        path: &Path,
-        overrides: &[String],
-        mesh_files: MeshFiles,
-    ) -> Result<AnyScene, SceneError> {
-        let whole = include::whole(text, path, overrides)?;
-        let messages = Messages {
-            path,
-            whole: &whole,
-            overrides,
-        };
-        let is_list = |document: &DocumentMut| {
-            document
-                .get("bearing")
-                .is_some_and(|item| item.is_array_of_tables() || item.is_array())
-        };
-        let document = match messages.document(&whole.text) {
-            Ok(document) if is_list(&document) => document,
-            _ => {
-                return Scene::parse_one(text, path, overrides, mesh_files)
-                    .map(|s| AnyScene::One(Box::new(s)));
-            }
-        };
-        let composer = Composer {
-            path,
-            overrides,
-            mesh_files,
-            whole: &whole,
-            messages,
-        };
-        composer.several(document)
-    }
-}
-
-impl Scene {
-    /// The same scene with its shaft prescribed at a displacement, m and rad: what a bearing of a list leaves behind
-    /// can be run by itself.
-    pub fn with_shaft_at(&self, displacement: [f64; 5]) -> Result<Scene, SceneError> {
-        let overrides: Vec<String> = ["x", "y", "z", "tilt_x", "tilt_y"]
-            .iter()
-            .zip(displacement)
-            .enumerate()
-            .map(|(i, (key, q))| {
-                let unit = if i < 3 { "m" } else { "rad" };
-                format!("shaft.{key}=\"{q:?} {unit}\"")
-            })
-            .collect();
-        let scene = Scene::parse(&self.text, &self.path, &overrides, MeshFiles::MayBeMissing)?;
-        Ok(Scene {
-            overrides: self.overrides.clone(),
-            ..scene
-        })
-    }
-}
-
 /// Those `--set` arguments that are of the types of the bearings: they are not in the text of a list.
 pub fn overrides_of_types(overrides: &[String]) -> Vec<String> {
-    overrides
-        .iter()
-        .filter(|o| compose::is_of_type(o))
-        .cloned()
-        .collect()
+    overrides.iter().filter(|o| is_of_type(o)).cloned().collect()
+}
+
+/// Whether a `--set` argument is of the type of the bearings.
+fn is_of_type(argument: &str) -> bool {
+    let root = argument.split(['.', '=']).next().unwrap_or_default().trim();
+    root != "bearing" && OF_TYPE.contains(&root)
 }
 
 /// Names of the bearings in the text of a list that was read before.
@@ -236,24 +157,6 @@ impl SeveralScene {
     /// The `--set` arguments that are of the types of the bearings: they are not in the text.
     pub fn type_overrides(&self) -> Vec<String> {
         overrides_of_types(&self.overrides)
-    }
-
-    /// The scenes of the points of a sweep, in order; none for any other scene.
-    pub fn sweep_scenes(&self) -> Result<Vec<SeveralScene>, SceneError> {
-        let Analysis::Sweep(sweep) = &self.analysis else {
-            return Ok(Vec::new());
-        };
-        let point = |text: &str| -> Result<SeveralScene, SceneError> {
-            match AnyScene::parse(text, &self.path, &self.type_overrides(), MeshFiles::MayBeMissing)? {
-                AnyScene::Several(scene) => Ok(*scene),
-                AnyScene::One(_) => Err(SceneError::Invalid {
-                    path: self.path.clone(),
-                    overrides: Vec::new(),
-                    problems: vec!["a point of the sweep has one bearing alone; expected a list".to_string()],
-                }),
-            }
-        };
-        sweep.points.iter().map(|p| point(&p.text)).collect()
     }
 }
 

@@ -1,0 +1,86 @@
+//! A stored step that a motion goes on from.
+
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+
+use anyhow::{Context, anyhow};
+use checkpoint::{FolderLock, Stamps, StateArray, StepRecord};
+use dynamics::motion::{Motion, MotionState};
+use results::failure::Failure;
+use results::reduction::take_arrays;
+use results::state_arrays::{self, Arrays};
+use results::watch::Watch;
+
+/// Array of a step file that counts Newton's iterations since the start of the run.
+const NEWTON: &str = "newton_iterations";
+
+/// A step to go on from.
+pub struct Stored {
+    /// The lock of its folder, on rank 0.
+    pub lock: Option<FolderLock>,
+    /// The folder.
+    pub dir: PathBuf,
+    /// Its number.
+    pub step: u64,
+    /// Warnings of the start of the run.
+    pub warnings: Vec<String>,
+    /// What the step tells of the tables; None if it is of a version that kept no checksums of them.
+    pub tables: Option<Stamps>,
+    /// Time of the step, s.
+    pub time: f64,
+    /// Its restart state.
+    pub arrays: BTreeMap<String, StateArray>,
+}
+
+/// What a run goes on from.
+pub struct RestartedFrom {
+    /// All that evolves.
+    pub state: MotionState,
+    /// Newton's iterations so far.
+    pub newton: u64,
+    /// Contacts beyond their limits so far.
+    pub watch: Watch,
+    /// What is known of the whole run by `[output.reduction]`.
+    pub reduction: Arrays,
+}
+
+impl Stored {
+    /// Adds what the run counts besides its state.
+    pub fn add_counts(record: &mut StepRecord, newton: u64, watch: &Watch) {
+        let newton = i64::try_from(newton).expect("nobody iterates 2^63 times");
+        record
+            .state
+            .insert(NEWTON.to_string(), StateArray::Integer(vec![newton]));
+        watch.put(&mut record.state);
+    }
+
+    /// The state, and what the run counts besides.
+    pub fn state(&self, motion: &Motion<'_>) -> Result<RestartedFrom, Failure> {
+        let at = || format!("step {} of {}", self.step, self.dir.display());
+        let mut arrays = self.arrays.clone();
+        let reduction = take_arrays(&mut arrays);
+        let newton = match arrays.remove(NEWTON) {
+            Some(StateArray::Integer(count)) if count.len() == 1 => count[0].max(0) as u64,
+            _ => return Err(anyhow!("{} has no count of iterations", at()).into()),
+        };
+        let watch = Watch::take(&mut arrays, motion.n_balls());
+        let watch = watch.ok_or_else(|| anyhow!("{} has no count of contacts beyond their limits", at()))?;
+        let state = state_arrays::load(&arrays, &motion.shape()).with_context(at)?;
+        let time = motion.time(state.step);
+        if state.step != self.step || time.to_bits() != self.time.to_bits() {
+            return Err(anyhow!(
+                "{} says t = {:?} s, but its state is that of step {} at {time:?} s",
+                at(),
+                self.time,
+                state.step
+            )
+            .into());
+        }
+        Ok(RestartedFrom {
+            state,
+            newton,
+            watch,
+            reduction,
+        })
+    }
+}
