@@ -27,6 +27,10 @@ pub fn check(scene: &SeveralScene) -> Result<(), Failure> {
             "analysis dynamic: {} steps of {} s, a step file of each bearing every {}",
             dynamic.n_steps, dynamic.step, dynamic.output_every
         )),
+        Analysis::Modes(wanted) => print::line(format_args!(
+            "analysis modes, the {} lowest of all bearings with their shaft",
+            wanted.number
+        )),
         _ => print::line(format_args!("analysis static")),
     }
     let names = scene.effects.names();

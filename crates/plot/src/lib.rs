@@ -168,6 +168,7 @@ fn named(found: anyhow::Result<Vec<(String, Figure)>>) -> anyhow::Result<Vec<Nam
 pub fn figures(dir: &Path, choice: &Choice) -> Result<Figures, Failure> {
     if several::is_of_several(dir) {
         let mut drawn = named(several::figures(dir))?;
+        drawn.extend(modes::figures(dir)?);
         drawn.extend(linear_figures(dir)?);
         let problems = Vec::new();
         return Ok(Figures { drawn, problems });
