@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use crate::carried::{N_SHAFT, ShaftPlace, combined, dot};
 use crate::frame::FrameForms;
+use crate::rows::lane_dot;
 
 /// A body as oscillators.
 #[derive(Clone, Debug, PartialEq)]
@@ -213,18 +214,18 @@ impl SeatModes {
 
     /// Forces on the oscillators of forces lam on the functions of the seat, N.
     pub fn loads(&self, lam: &[f64]) -> Vec<f64> {
-        self.rows().map(|row| dot(row, lam)).collect()
+        self.rows().map(|row| lane_dot(row, lam)).collect()
     }
 
-    /// D = V diag(1/s) V^T of the functions of the seat for effective masses s of the oscillators,
-    /// `[n_functions]^2` flat; empty for a rigid body.
-    pub fn softness(&self, effective: &[f64]) -> Vec<f64> {
-        let n = self.own.len();
-        let mut softness = vec![0.0; n * n];
-        for (row, s) in self.rows().zip(effective) {
-            for (to, v) in softness.chunks_exact_mut(n).zip(row) {
+    /// V diag(1/s) W^T of the functions of the seat and of those of another on the same body, W, for effective masses s
+    /// of the oscillators, `[n_functions][n_others]` flat; empty for a rigid body.
+    pub fn softness(&self, other: &SeatModes, effective: &[f64]) -> Vec<f64> {
+        let [n, n_others] = [self, other].map(|seat| seat.own.len());
+        let mut softness = vec![0.0; n * n_others];
+        for ((row, s), by_other) in self.rows().zip(effective).zip(other.rows()) {
+            for (to, v) in softness.chunks_exact_mut(n_others).zip(row) {
                 let by = v / s;
-                to.iter_mut().zip(row).for_each(|(d, w)| *d += by * w);
+                to.iter_mut().zip(by_other).for_each(|(d, w)| *d += by * w);
             }
         }
         softness

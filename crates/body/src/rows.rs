@@ -132,7 +132,8 @@ impl SeatRows {
     }
 }
 
-fn lane_dot(a: &[f64], b: &[f64]) -> f64 {
+/// Scalar product, in lanes.
+pub(crate) fn lane_dot(a: &[f64], b: &[f64]) -> f64 {
     let mut lanes = [0.0; LANES];
     let (whole, rest) = a.as_chunks::<LANES>();
     let (others, rest_of_others) = b.as_chunks::<LANES>();

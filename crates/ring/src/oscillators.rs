@@ -144,6 +144,11 @@ impl Oscillators {
         self.functions.n()
     }
 
+    /// Whether the body carries other rings.
+    pub(crate) fn has_others(&self) -> bool {
+        self.tie.has_others()
+    }
+
     /// Bytes of the joint; those of the body are its own.
     pub(crate) fn bytes(&self) -> usize {
         let n = self.functions.n();
@@ -299,7 +304,39 @@ impl BodyFactor {
 
     /// D, m/N, `[n][n]` flat; empty for a rigid body.
     pub fn softness(&self) -> Vec<f64> {
-        self.body.modes.softness(&self.effective)
+        self.body.modes.softness(&self.body.modes, &self.effective)
+    }
+
+    /// Motion of the seat by unit forces on the functions of another one of the body, m/N, `[n][n_others]` flat. The
+    /// shaft that carries the body stands; `alone` is how it then holds it.
+    pub fn softness_by(&self, other: &SeatModes, alone: &[f64]) -> Vec<f64> {
+        let mut softness = self.body.modes.softness(other, &self.effective);
+        let Some(shares) = self.body.on_shaft() else {
+            return softness;
+        };
+        let [of_seat, of_other] = [&self.body.modes, other].map(|seat| self.of_seat(shares, seat));
+        let [n, n_others] = [&of_seat, &of_other].map(|of| of.len() / N_SHAFT);
+        for (own, stiffness) in of_seat.chunks_exact(n).zip(alone.chunks_exact(N_SHAFT)) {
+            for (by_other, k) in of_other.chunks_exact(n_others).zip(stiffness) {
+                for (to, v) in softness.chunks_exact_mut(n_others).zip(own) {
+                    to.iter_mut().zip(by_other).for_each(|(d, w)| *d -= v * k * w);
+                }
+            }
+        }
+        softness
+    }
+
+    /// Motion of a seat by unit forces of the shaft that carries the body, `[n_shaft][n]` flat.
+    fn of_seat(&self, shares: &ShaftAtSeat, seat: &SeatModes) -> Vec<f64> {
+        let n = seat.own.len();
+        let mut of_seat = vec![0.0; N_SHAFT * n];
+        for ((row, shaft), s) in seat.rows().zip(&shares.rows).zip(&self.effective) {
+            for (to, q) in of_seat.chunks_exact_mut(n).zip(shaft) {
+                let by = q / s;
+                to.iter_mut().zip(row).for_each(|(d, v)| *d += by * v);
+            }
+        }
+        of_seat
     }
 
     /// What the shaft does to the body; empty where none carries it.
@@ -307,22 +344,17 @@ impl BodyFactor {
         let Some(shares) = self.body.on_shaft() else {
             return ShaftSoftness::default();
         };
-        let n = self.body.n_functions();
-        let mut softness = ShaftSoftness {
-            of_seat: vec![0.0; N_SHAFT * n],
-            own: vec![0.0; N_SHAFT * N_SHAFT],
-        };
-        let rows = self.body.modes.rows().zip(&shares.rows).zip(&self.effective);
-        for ((seat, shaft), s) in rows {
-            for (k, q) in shaft.iter().enumerate() {
+        let mut own = vec![0.0; N_SHAFT * N_SHAFT];
+        for (shaft, s) in shares.rows.iter().zip(&self.effective) {
+            for (to, q) in own.chunks_exact_mut(N_SHAFT).zip(shaft) {
                 let by = q / s;
-                let of_seat = softness.of_seat[n * k..n * (k + 1)].iter_mut();
-                of_seat.zip(seat).for_each(|(d, v)| *d += by * v);
-                let own = softness.own[N_SHAFT * k..N_SHAFT * (k + 1)].iter_mut();
-                own.zip(shaft).for_each(|(d, q)| *d += by * q);
+                to.iter_mut().zip(shaft).for_each(|(d, q)| *d += by * q);
             }
         }
-        softness
+        ShaftSoftness {
+            of_seat: self.of_seat(shares, &self.body.modes),
+            own,
+        }
     }
 
     /// The inertia of a turning frame, at first as if the body went on as it does.
@@ -393,9 +425,9 @@ impl BodyFactor {
     pub fn advanced(&self, old: &BodyState, step: &BodyStep, lam: &[f64], shaft: &[f64]) -> BodyState {
         let mut new = old.clone();
         let by_shaft = self.body.on_shaft().map(|shares| &shares.rows);
-        for (i, row) in self.body.modes.rows().enumerate() {
+        for (i, load) in self.body.modes.loads(lam).into_iter().enumerate() {
             let pull = by_shaft.map_or(0.0, |rows| dot(&rows[i], shaft));
-            let increment = step.increments[i] - (dot(row, lam) - pull) / self.effective[i];
+            let increment = step.increments[i] - (load - pull) / self.effective[i];
             let [x, v, a] = &mut new.0;
             let scheme = self.scheme;
             [v[i], a[i]] = scheme.integrator.update(scheme.dt, increment, v[i], a[i]);

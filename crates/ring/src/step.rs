@@ -18,6 +18,7 @@
 
 use std::sync::Arc;
 
+use body::SeatModes;
 use contact::NodalWeights;
 use timer::Laps;
 
@@ -163,6 +164,18 @@ pub trait StepFactor: Send + Sync {
     /// Of a ring with a defect, see [`solver::cyclic::Defect::iterations`].
     fn iterations(&self) -> Option<usize>;
 
+    /// Motion of the seat of a ring by unit forces on its functions over a step, m/N, `[n][n]` flat; None where the
+    /// ring is not on a body that carries others.
+    fn seat_compliance(&self) -> Option<&[f64]> {
+        None
+    }
+
+    /// The same of the seat of the body by unit forces on the functions of a seat on it, `[n][n_others]` flat, with the
+    /// shaft that carries the body held.
+    fn body_compliance(&self, _seat: &SeatModes) -> Option<Vec<f64>> {
+        None
+    }
+
     /// What is found of a known load before the contacts, from a state.
     fn predict(&self, from: &RingState, load: KnownLoad) -> Known;
 
@@ -186,9 +199,14 @@ pub trait ElasticStep: Send {
     /// Moves the contacts to other places; says of the time what is told apart from the block solve.
     fn move_contacts(&mut self, contacts: Feet<'_>) -> Laps;
 
-    /// Load of the ring on the oscillators of the body to which it is tied, under these forces; None: there is none.
-    fn load_on_body(&self, _forces: PortForces<'_>) -> Option<Vec<f64>> {
+    /// Forces of the joint of ring and body on the functions of its seat, N, under these forces; None: there is none.
+    fn forces_of_joint(&self, _forces: PortForces<'_>) -> Option<Vec<f64>> {
         None
+    }
+
+    /// Load on the oscillators of the body under forces of the joint.
+    fn load_on_body(&self, _joint: &[f64]) -> Vec<f64> {
+        Vec::new()
     }
 
     /// Puts a mean load over the step on these oscillators, in place of the one before: what other rings do to them.

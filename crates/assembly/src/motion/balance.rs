@@ -70,7 +70,7 @@ impl ShaftStep<'_> {
                     self.search(parts, at, &step)?
                 }
                 // Loads of bodies have changed, and the residual with them: a step, or the same place anew.
-                Holding::Again if is_balanced || bodies.are_far() => self.evaluate(parts, at.end)?,
+                Holding::Again if is_balanced => self.evaluate(parts, at.end)?,
                 Holding::Again => {
                     let step = kept.step(self, parts, &at.residual)?;
                     let end = at.end.iter().zip(&step).map(|(q, s)| q + s).collect();

@@ -1,27 +1,47 @@
 //! Bodies that carry several bearings, over a part of a step.
 //!
-//! Every bearing moves the whole body, its own seat by the forces of its joint, and the oscillators besides by the mean
-//! loads of the other bearings. A round hands these on. Over a step the inertia of the body holds most of what one
-//! bearing does away from the others, so rounds contract fast: by about the share of the ring's mass in that of the
-//! body. What the ledger of a bearing says of its body includes what the others do to it, as imposed work.
+//! Every bearing moves the whole body, its own seat by the forces lam of its joint, and the oscillators besides by the
+//! mean loads of the other bearings. A round hands these on. At given forces on the contacts, and a given motion of the
+//! shaft, all joints together are a linear system: with A the compliance of a ring at its seat and D that of the body
+//! between two seats, over the part,
+//!
+//! ```text
+//! A_s lam_s + sum over seats D_st lam_t = gap_s
+//! ```
+//!
+//! A bearing has solved its own row with the forces of the others that it was told. What these have changed since,
+//! c_t, asks for a correction d of all:
+//!
+//! ```text
+//! A_s d_s + sum over seats D_st d_t = -sum over others D_st c_t
+//! ```
+//!
+//! So a round leaves only what the contacts answer to the corrections: over a step the inertia of rings holds most of
+//! that back. What the ledger of a bearing says of its body includes what the others do to it, as imposed work.
 
+use contact::Side;
+use dense::DenseCholesky;
 use dynamics::motion::held::{HeldPart, Holding};
 
+use crate::error::AssemblyError;
 use crate::housing::HousedTogether;
-use crate::mixing::{Mixing, dot};
+use crate::mixing::dot;
 
-/// Change of the loads over their size at which they stay as they are. The ledger of each bearing closes with any
+/// Change of the forces over their size at which they stay as they are. The ledger of each bearing closes with any
 /// loads; what is left makes the copies of a body differ.
 const LIMIT: f64 = 1e-10;
 /// The same where rounds no longer contract.
 const FLOOR: f64 = 1e-8;
-/// The same above which the shaft need not move before bearings have answered to the new loads.
-const FAR: f64 = 0.1;
-/// A round that leaves more than this of the change before it contracts slowly: the next point is that of the mixing.
-/// Elsewhere that would only spread round-off.
-const SLOW: f64 = 0.2;
 /// A round that leaves more than this of the change before it no longer contracts.
 const STALLED: f64 = 0.5;
+
+/// The joints of a body with all rings that it carries, over parts of one size.
+pub struct BodyJoints {
+    /// Size of the parts, s.
+    dt: f64,
+    /// (A + D)^-1 times D between different seats, over the functions of all, column-major.
+    answers: Vec<f64>,
+}
 
 /// Loads on the oscillators of shared bodies.
 pub struct SharedLoads<'a> {
@@ -31,25 +51,104 @@ pub struct SharedLoads<'a> {
 /// Loads on one body.
 struct SharedLoad<'a> {
     housed: &'a HousedTogether,
-    /// Of each bearing, one after the other; empty before the first round.
-    loads: Vec<f64>,
-    mixing: Mixing,
+    joints: BodyJoints,
+    /// Forces of the joint of each seat that the others were told, N; empty before the first round.
+    told: Vec<Vec<f64>>,
     /// Last change over the size.
     change: f64,
 }
 
-impl<'a> SharedLoads<'a> {
-    /// Loads of the bearings in each body, none yet.
-    pub fn new(housed: &'a [HousedTogether]) -> SharedLoads<'a> {
-        let body = |housed: &'a HousedTogether| SharedLoad {
-            housed,
-            loads: Vec::new(),
-            mixing: Mixing::default(),
-            change: f64::INFINITY,
-        };
-        SharedLoads {
-            bodies: housed.iter().map(body).collect(),
+impl BodyJoints {
+    /// Of a body over the parts that have begun.
+    fn new(housed: &HousedTogether, parts: &[HeldPart<'_>]) -> Result<BodyJoints, AssemblyError> {
+        let HousedTogether { side, bearings, .. } = housed;
+        let (mut softness, mut own) = (Vec::new(), Vec::new());
+        for &i in bearings {
+            let factor = parts[i].factor(*side);
+            let factor = factor.map_err(AssemblyError::of_bearing(&housed.name))?;
+            let factor = factor.expect("a ring in a body is flexible");
+            let bodies = bearings.iter().filter_map(|&t| parts[t].body(*side));
+            let row = bodies.filter_map(|body| factor.body_compliance(&body.modes));
+            softness.push(row.collect::<Vec<_>>());
+            own.push(factor.seat_compliance().unwrap_or_default());
         }
+        let sizes: Vec<usize> = own.iter().map(|a: &&[f64]| a.len().isqrt()).collect();
+        let n: usize = sizes.iter().sum();
+        // Both are symmetric, so rows are columns.
+        let (mut joints, mut between) = (Vec::with_capacity(n * n), Vec::with_capacity(n * n));
+        for (s, (row, a)) in softness.iter().zip(&own).enumerate() {
+            for i in 0..sizes[s] {
+                for (t, d) in row.iter().enumerate() {
+                    let d = &d[sizes[t] * i..sizes[t] * (i + 1)];
+                    if t == s {
+                        let a = &a[sizes[s] * i..sizes[s] * (i + 1)];
+                        joints.extend(d.iter().zip(a).map(|(d, a)| d + a));
+                        between.extend(std::iter::repeat_n(0.0, sizes[s]));
+                    } else {
+                        joints.extend_from_slice(d);
+                        between.extend_from_slice(d);
+                    }
+                }
+            }
+        }
+        let joints = DenseCholesky::factor(n, &joints);
+        let joints = joints.map_err(|source| AssemblyError::Matrix { source })?;
+        joints.solve(&mut between, n);
+        Ok(BodyJoints {
+            dt: parts[0].dt(),
+            answers: between,
+        })
+    }
+
+    /// What changes of the forces that others feel ask of all joints, N, over the functions of all seats.
+    fn correction(&self, changes: &[f64]) -> Vec<f64> {
+        let mut correction = vec![0.0; changes.len()];
+        let columns = self.answers.chunks_exact(changes.len().max(1));
+        for (column, change) in columns.zip(changes) {
+            let of_all = correction.iter_mut().zip(column);
+            of_all.for_each(|(lam, by)| *lam -= change * by);
+        }
+        correction
+    }
+}
+
+impl<'a> SharedLoads<'a> {
+    /// Loads of the bearings in each body, none yet; `kept` are joints of earlier parts.
+    pub fn new(
+        housed: &'a [HousedTogether],
+        parts: &[HeldPart<'_>],
+        kept: Vec<BodyJoints>,
+    ) -> Result<SharedLoads<'a>, AssemblyError> {
+        let mut kept = kept.into_iter();
+        let body = |housed: &'a HousedTogether| {
+            let joints = kept.next().filter(|joints| joints.dt == parts[0].dt());
+            Ok(SharedLoad {
+                housed,
+                joints: joints.map_or_else(|| BodyJoints::new(housed, parts), Ok)?,
+                told: Vec::new(),
+                change: f64::INFINITY,
+            })
+        };
+        let bodies = housed.iter().map(body).collect::<Result<_, AssemblyError>>()?;
+        Ok(SharedLoads { bodies })
+    }
+
+    /// Hands on the loads that are expected before the first answers. A body on the shaft has none: what the shaft does
+    /// to it is not known yet.
+    pub fn expect(&mut self, parts: &mut [HeldPart<'_>]) {
+        for body in &mut self.bodies {
+            let HousedTogether { side, bearings, .. } = body.housed;
+            let seen = parts[bearings[0]].body(*side);
+            if seen.is_some_and(|body| body.on_shaft().is_none()) {
+                body.exchange(parts);
+                body.change = f64::INFINITY;
+            }
+        }
+    }
+
+    /// The joints, for the next part.
+    pub fn into_joints(self) -> Vec<BodyJoints> {
+        self.bodies.into_iter().map(|body| body.joints).collect()
     }
 
     /// Name of the body whose loads changed most in the last exchange, and their change over their size.
@@ -59,12 +158,6 @@ impl<'a> SharedLoads<'a> {
             .iter()
             .map(|body| (&body.housed.name[..], body.change));
         changes.max_by(|a, b| a.1.total_cmp(&b.1))
-    }
-
-    /// Whether the last exchange changed much: nothing is near its end yet.
-    pub fn are_far(&self) -> bool {
-        let far = FAR..f64::INFINITY;
-        self.bodies.iter().any(|body| far.contains(&body.change))
     }
 
     /// Hands on the loads of the last answers; settled if no bearing is told anything new.
@@ -82,33 +175,40 @@ impl<'a> SharedLoads<'a> {
 impl SharedLoad<'_> {
     fn exchange(&mut self, parts: &mut [HeldPart<'_>]) -> Holding {
         let HousedTogether { side, bearings, .. } = self.housed;
-        let answers = bearings.iter().map(|&i| parts[i].load_on_body(*side));
-        let found: Vec<f64> = answers.flat_map(Option::unwrap_or_default).collect();
-        if self.loads.is_empty() {
-            self.loads = vec![0.0; found.len()];
+        let answers = bearings.iter().map(|&i| parts[i].forces_of_joint(*side));
+        let mut found: Vec<Vec<f64>> = answers.map(Option::unwrap_or_default).collect();
+        if self.told.is_empty() {
+            self.told = found.iter().map(|lam| vec![0.0; lam.len()]).collect();
         }
-        let size = dot(&found, &found).sqrt();
-        let off: Vec<f64> = found.iter().zip(&self.loads).map(|(g, x)| g - x).collect();
-        let change = dot(&off, &off).sqrt() / size.max(f64::MIN_POSITIVE);
+        let pairs = found.iter().flatten().zip(self.told.iter().flatten());
+        let changes: Vec<f64> = pairs.map(|(found, told)| found - told).collect();
+        let size = found.iter().map(|lam| dot(lam, lam)).sum::<f64>().sqrt();
+        let change = dot(&changes, &changes).sqrt() / size.max(f64::MIN_POSITIVE);
         let stalls = change > STALLED * self.change && change <= FLOOR;
-        let is_slow = change > SLOW * self.change;
         if change <= LIMIT || stalls {
             // What changes after this is new, such as turning frames: earlier rounds say nothing of it.
             self.change = f64::INFINITY;
-            self.mixing = Mixing::default();
             return Holding::Settled;
         }
         self.change = change;
-        let mixed = self.mixing.next(std::mem::take(&mut self.loads), &found);
-        self.loads = if is_slow { mixed } else { found };
-        let n = self.loads.len() / bearings.len();
-        for (number, &i) in bearings.iter().enumerate() {
-            let of_others = |k: usize| -> f64 {
-                let others = (0..bearings.len()).filter(|other| *other != number);
-                others.map(|other| self.loads[n * other + k]).sum()
-            };
-            parts[i].load_body(*side, (0..n).map(of_others).collect());
-        }
+        let corrections = self.joints.correction(&changes);
+        let corrected = found.iter_mut().flatten().zip(corrections);
+        corrected.for_each(|(lam, correction)| *lam += correction);
+        tell(*side, bearings, &found, parts);
+        self.told = found;
         Holding::Again
+    }
+}
+
+/// Puts the loads of the joints of the others on the body of each bearing.
+fn tell(side: Side, bearings: &[usize], joints: &[Vec<f64>], parts: &mut [HeldPart<'_>]) {
+    let pairs = bearings.iter().zip(joints);
+    let loads: Vec<Vec<f64>> = pairs.map(|(&i, lam)| parts[i].load_on_body(side, lam)).collect();
+    for (number, &i) in bearings.iter().enumerate() {
+        let of_others = |k: usize| -> f64 {
+            let others = (0..bearings.len()).filter(|other| *other != number);
+            others.map(|other| loads[other][k]).sum()
+        };
+        parts[i].load_body(side, (0..loads[number].len()).map(of_others).collect());
     }
 }

@@ -33,7 +33,7 @@ use dynamics::motion::{Integrator, Motion, MotionSettings, MotionState, PartSpan
 use dynamics::stiffness::N_SHAFT;
 use dynamics::{DynamicsError, ShaftDof};
 
-use self::bodies::SharedLoads;
+use self::bodies::{BodyJoints, SharedLoads};
 use self::factors::{KeptFactors, ShaftAlone};
 pub use self::ledger::ShaftLedger;
 use self::side_by_side::of_each;
@@ -82,12 +82,13 @@ pub struct AssemblyState {
     pub ledger: ShaftLedger,
 }
 
-/// What each bearing has found of its next step, see [`StepCache`], and factors of the shaft. Without it a step has the
-/// same bits.
+/// What each bearing has found of its next step, see [`StepCache`], and factors of the shaft and of the joints of
+/// shared bodies. Without it a step has the same bits.
 #[derive(Default)]
 pub struct AssemblyCache {
     bearings: Vec<StepCache>,
     shaft: Option<ShaftAlone>,
+    joints: Vec<BodyJoints>,
 }
 
 impl Assembly {
@@ -240,7 +241,8 @@ impl<'a> AssemblyMotion<'a> {
             tilt_arm: self.assembly.scales().tilt_arm,
         };
         let (mut end, mut kept) = (step.guess(), KeptFactors::new(&step, cache.shaft.take()));
-        let mut bodies = SharedLoads::new(&self.housed);
+        let mut bodies = SharedLoads::new(&self.housed, &parts, std::mem::take(&mut cache.joints))?;
+        bodies.expect(&mut parts);
         for _ in 0..MAX_ROUNDS {
             let answers;
             (end, answers) = step.balance(&mut parts, end, &mut kept, &mut bodies)?;
@@ -248,7 +250,7 @@ impl<'a> AssemblyMotion<'a> {
                 continue;
             }
             if self.all(&mut parts, |i, part| part.close(spans[i].1))? == Holding::Settled {
-                cache.shaft = kept.alone;
+                (cache.shaft, cache.joints) = (kept.alone, bodies.into_joints());
                 return self.finish(state, (&step, parts), (end, answers), cache);
             }
         }

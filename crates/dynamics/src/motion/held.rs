@@ -7,7 +7,7 @@
 use std::ops::Range;
 
 use contact::Side;
-use ring::{BodyAlone, StepScheme};
+use ring::{BodyAlone, Oscillators, StepFactor, StepScheme};
 use timer::SharedLaps;
 
 use super::cache::{RingEnds, StepCache};
@@ -20,9 +20,10 @@ use crate::bearing::BearingParts;
 use crate::condensation::condensed;
 use crate::costs::NEWTON;
 use crate::error::DynamicsError;
+use crate::interactions::discrete_gradient::MeanForce;
 use crate::stiffness::{N_SHAFT, ShaftMatrix};
 use crate::system::Follow;
-use crate::system::newton::Policy;
+use crate::system::newton::{KeptTangent, Policy};
 
 /// A part under way.
 pub struct HeldPart<'m> {
@@ -30,6 +31,8 @@ pub struct HeldPart<'m> {
     state: &'m MotionState,
     part: Part<'m>,
     solution: StepSolution,
+    /// Newton's tangent of the last answer; None where contacts have moved since.
+    tangent: Option<KeptTangent>,
     ends: Option<RingEnds>,
     /// Mean load of others on the body of each ring, on its oscillators, inner first; empty: none.
     body_loads: [Vec<f64>; 2],
@@ -66,7 +69,8 @@ impl<'m> HeldPart<'m> {
             motion,
             state,
             part: motion.begin(state, span, cache)?,
-            solution: StepSolution::default(),
+            solution: as_before(state),
+            tangent: None,
             ends: None,
             body_loads: Default::default(),
         })
@@ -85,7 +89,7 @@ impl<'m> HeldPart<'m> {
             blocks: &part.parts.kinematic_blocks(),
             ..policy(part.scale, None, &self.motion.costs)
         };
-        let solution = part.parts.solve_step_from(before, &policy)?;
+        let solution = part.parts.solve_step_from(before, &policy, &mut self.tangent)?;
         let scheme = StepScheme {
             integrator: self.motion.settings.integrator,
             dt: part.span.dt,
@@ -183,11 +187,34 @@ impl<'m> HeldPart<'m> {
         Some([0, 1, 2, 3, 4].map(|i| columns.map(|column| column[i])))
     }
 
-    /// Mean load of a ring on the oscillators of its body, of the last answer; None: there is no body.
-    pub fn load_on_body(&self, side: Side) -> Option<Vec<f64>> {
+    /// Size of the part, s.
+    pub fn dt(&self) -> f64 {
+        self.part.span.dt
+    }
+
+    /// Factor of a ring for parts of this size.
+    pub fn factor(&self, side: Side) -> Result<Option<&dyn StepFactor>, DynamicsError> {
+        let rung = self.motion.rung(self.part.span.rung)?;
+        Ok(rung[side.index()].as_deref())
+    }
+
+    /// Forces of the joint of a ring and its body in the last answer, N; before the first one, as the contact forces of
+    /// the last step let expect. None: there is no body.
+    pub fn forces_of_joint(&self, side: Side) -> Option<Vec<f64>> {
         let forces = self.part.parts.forces_at_ports(side, &self.solution);
         let ring = self.part.rings[side.index()].as_ref()?;
-        ring.load_on_body(forces.at_ports())
+        ring.forces_of_joint(forces.at_ports())
+    }
+
+    /// Mean load of a ring on the oscillators of its body under forces of their joint.
+    pub fn load_on_body(&self, side: Side, joint: &[f64]) -> Vec<f64> {
+        let ring = self.part.rings[side.index()].as_ref();
+        ring.map_or_else(Vec::new, |ring| ring.load_on_body(joint))
+    }
+
+    /// The body of a ring.
+    pub fn body(&self, side: Side) -> Option<&Oscillators> {
+        self.motion.tied(side)
     }
 
     /// Puts the mean load of others on these oscillators, in place of the one before.
@@ -206,7 +233,11 @@ impl<'m> HeldPart<'m> {
         let stays = self
             .motion
             .stays_in_place(self.state, &mut self.part, &self.solution)?;
-        Ok(if stays { Holding::Settled } else { Holding::Again })
+        if stays {
+            return Ok(Holding::Settled);
+        }
+        self.tangent = None;
+        Ok(Holding::Again)
     }
 
     /// Brings the inertia of turning frames in line with the last answer and ends the rings; looks ahead to the part
@@ -240,6 +271,18 @@ impl<'m> HeldPart<'m> {
         }
         cache.ahead = ahead;
         Ok((next, report))
+    }
+}
+
+/// What is expected of a part before its first answer: the contact forces of the last step.
+fn as_before(state: &MotionState) -> StepSolution {
+    let forces = state.forces.iter().map(|&force| MeanForce {
+        force,
+        ..MeanForce::default()
+    });
+    StepSolution {
+        forces: forces.collect(),
+        ..StepSolution::default()
     }
 }
 

@@ -16,7 +16,7 @@ use crate::interactions::free_contact::FoundContact;
 use crate::interactions::raceway_contact::SiteState;
 use crate::model::{MAX_TILT, Model};
 use crate::system::System;
-use crate::system::newton::{Policy, RoundOff, Shortening};
+use crate::system::newton::{KeptTangent, Policy, RoundOff, Shortening};
 
 /// Newton iterations before a step counts as failed.
 const MOST_ITERATIONS: usize = 40;
@@ -71,17 +71,18 @@ impl StepSolution {
 impl BearingParts {
     /// Solves the part; `scale` is the largest force that acts at its start, N.
     pub fn solve_step(&self, scale: f64, costs: &SharedLaps) -> Result<StepSolution, DynamicsError> {
-        self.solve_step_from(None, &policy(scale, None, costs))
+        self.solve_step_from(None, &policy(scale, None, costs), &mut None)
     }
 
-    /// The same by a policy, from given unknowns or from the guess of the system.
+    /// The same by a policy, from given unknowns or from the guess of the system, and with a tangent that is kept.
     pub(super) fn solve_step_from(
         &self,
         start: Option<Vec<f64>>,
         policy: &Policy<'_>,
+        kept: &mut Option<KeptTangent>,
     ) -> Result<StepSolution, DynamicsError> {
         let (system, costs) = (self.system(), policy.costs);
-        let solved = system.solve(start.unwrap_or_else(|| system.guess()), policy)?;
+        let solved = system.solve_again(start.unwrap_or_else(|| system.guess()), policy, kept)?;
         let (x, reaches) = (&solved.unknowns, self.reaches(&solved.unknowns));
         let means = self.contacts.means;
         let balls = means.map(|means| self.contacts.mean_forces(lengths(&reaches), means, costs));

@@ -72,6 +72,16 @@ pub struct Policy<'p> {
     pub costs: &'p SharedLaps,
 }
 
+/// A tangent, as kept for further iterations.
+#[derive(Default)]
+pub struct KeptTangent {
+    /// Row-major; scaled once it is factored.
+    matrix: Vec<f64>,
+    /// Its diagonal, not scaled.
+    diagonal: Vec<f64>,
+    factors: Option<TangentFactors>,
+}
+
 /// A solved system.
 pub struct NewtonSolution {
     /// The unknowns.
@@ -82,16 +92,20 @@ pub struct NewtonSolution {
 
 impl System<'_> {
     /// Solves the system from the unknowns `x`. Fails with the residual history and the place of the largest residual.
-    pub fn solve(&self, mut x: Vec<f64>, policy: &Policy) -> Result<NewtonSolution, DynamicsError> {
-        let mut bodies = self.body_tangent(&x);
+    pub fn solve(&self, x: Vec<f64>, policy: &Policy) -> Result<NewtonSolution, DynamicsError> {
+        self.solve_again(x, policy, &mut None)
+    }
+
+    /// The same with the tangent that an earlier solution nearby has left, and leaves its own.
+    pub fn solve_again(
+        &self,
+        mut x: Vec<f64>,
+        policy: &Policy,
+        kept: &mut Option<KeptTangent>,
+    ) -> Result<NewtonSolution, DynamicsError> {
         let (mut history, mut best, mut stalled) = (Vec::new(), f64::INFINITY, 0);
         let mut at = self.evaluate(&x, policy.costs);
-        if self.has_curvature() && self.interval() != Interval::Rest {
-            // It hardly changes over a step.
-            self.add_curvatures(&x, &at.links, &mut bodies);
-        }
-        let (mut tangent, mut diagonal) = (bodies.clone(), Vec::new());
-        let mut factors: Option<TangentFactors> = None;
+        let mut bodies = Vec::new();
         let (mut worst, mut limit) = (0, 0.0);
         for iteration in 0..policy.most_iterations {
             let (place, now) = largest(&policy.scaled(&at.residual));
@@ -101,20 +115,18 @@ impl System<'_> {
                     what: "a contact force",
                 });
             }
-            let is_fast = history.last().is_some_and(|last| now <= KEPT_SHRINK * last);
+            let is_fast = history.last().is_none_or(|last| now <= KEPT_SHRINK * last);
             history.push(now);
             stalled = if now < 0.5 * best { 0 } else { stalled + 1 };
             best = best.min(now);
             let scale = force_scale(&at.links, policy.force_scale);
             limit = policy.residual_limit * scale;
-            factors = factors.filter(|_| policy.keeps_factors && is_fast);
-            if factors.is_none() {
-                tangent.copy_from_slice(&bodies);
-                self.add_link_tangents(&x, &at.links, &mut tangent);
-                diagonal = tangent.iter().step_by(x.len() + 1).copied().collect();
-            }
+            let mut tangent = match kept.take() {
+                Some(earlier) if policy.keeps_factors && is_fast => earlier,
+                _ => self.tangent(&x, &at, &mut bodies),
+            };
             let floor = || match policy.round_off {
-                RoundOff::Unknowns => round_off(&diagonal, &x),
+                RoundOff::Unknowns => round_off(&tangent.diagonal, &x),
                 RoundOff::Links => self.round_off(&x),
             };
             // Where increments are small beside places, these have their own round-off.
@@ -124,14 +136,16 @@ impl System<'_> {
             let is_solved = now <= RESIDUAL_TARGET * scale || (stalled >= 2 && is_floor());
             if is_solved {
                 let (unknowns, iterations) = (x, iteration);
+                *kept = Some(tangent);
                 return Ok(NewtonSolution { unknowns, iterations });
             }
-            let found = match factors.take() {
-                Some(kept) => kept,
-                None => self.factors(&x, &at, &mut tangent, policy)?,
+            let factors = match tangent.factors.take() {
+                Some(factors) => factors,
+                None => self.factors(&x, &at, &mut tangent.matrix, policy)?,
             };
-            let step = self.direction(&found, &at.residual, policy);
-            factors = Some(found);
+            let step = self.direction(&factors, &at.residual, policy);
+            tangent.factors = Some(factors);
+            *kept = Some(tangent);
             if is_at_floor {
                 // Light bodies beside heavy ones gain by the last step; its residual is round-off of the heavy ones.
                 x.iter_mut().zip(&step).for_each(|(x, s)| *x += s);
@@ -149,6 +163,23 @@ impl System<'_> {
             limit,
             history: history.split_off(tail),
         })
+    }
+
+    /// The tangent at a point; `bodies` is the part that hardly changes over a step, made when first asked for.
+    fn tangent(&self, x: &[f64], at: &Evaluated, bodies: &mut Vec<f64>) -> KeptTangent {
+        if bodies.is_empty() {
+            *bodies = self.body_tangent(x);
+            if self.has_curvature() && self.interval() != Interval::Rest {
+                self.add_curvatures(x, &at.links, bodies);
+            }
+        }
+        let mut matrix = bodies.clone();
+        self.add_link_tangents(x, &at.links, &mut matrix);
+        KeptTangent {
+            diagonal: matrix.iter().step_by(x.len() + 1).copied().collect(),
+            matrix,
+            factors: None,
+        }
     }
 
     /// Factors of the tangent, which is scaled. Where curvatures of finite motions make an energy's tangent indefinite,

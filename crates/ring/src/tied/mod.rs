@@ -127,6 +127,7 @@ impl ElasticBody for TiedRing {
     fn step_factor(self: Arc<Self>, scheme: StepScheme) -> Result<Box<dyn StepFactor>, RingError> {
         let ring = self.ring.clone().step_factor(scheme)?;
         let mut joint = seat_compliance(&*self.ring, &*ring);
+        let seat = self.body.has_others().then(|| joint.clone());
         let body = BodyFactor::new(self.body.clone(), scheme);
         joint.iter_mut().zip(body.softness()).for_each(|(a, d)| *a += d);
         let joint = DenseCholesky::factor(self.body.n_functions(), &joint)
@@ -135,6 +136,7 @@ impl ElasticBody for TiedRing {
         Ok(Box::new(TiedFactor {
             body,
             ring,
+            seat,
             joint,
             shaft,
         }))

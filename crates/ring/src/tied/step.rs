@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use body::{N_SHAFT, length};
+use body::{N_SHAFT, SeatModes, length};
 use dense::{DenseCholesky, DenseError};
 use timer::Laps;
 
@@ -17,6 +17,8 @@ use crate::vectors::dot;
 pub(super) struct TiedFactor {
     pub body: BodyFactor,
     pub ring: Box<dyn StepFactor>,
+    /// A, where the body carries other rings.
+    pub seat: Option<Vec<f64>>,
     /// A + D.
     pub joint: DenseCholesky,
     pub shaft: TiedShaft,
@@ -98,7 +100,16 @@ struct TiedStep<'a> {
 impl StepFactor for TiedFactor {
     fn bytes(&self) -> usize {
         let n = self.body.body.n_functions();
-        self.ring.bytes() + size_of::<f64>() * n * n
+        let seat = self.seat.as_ref().map_or(0, Vec::len);
+        self.ring.bytes() + size_of::<f64>() * (n * n + seat)
+    }
+
+    fn seat_compliance(&self) -> Option<&[f64]> {
+        self.seat.as_deref()
+    }
+
+    fn body_compliance(&self, seat: &SeatModes) -> Option<Vec<f64>> {
+        Some(self.body.softness_by(seat, &self.shaft.alone))
     }
 
     fn iterations(&self) -> Option<usize> {
@@ -268,14 +279,18 @@ impl ElasticStep for TiedStep<'_> {
         laps
     }
 
-    fn load_on_body(&self, forces: PortForces<'_>) -> Option<Vec<f64>> {
-        let mut load = self.factor.body.body.modes.loads(&self.joint(forces));
+    fn forces_of_joint(&self, forces: PortForces<'_>) -> Option<Vec<f64>> {
+        Some(self.joint(forces))
+    }
+
+    fn load_on_body(&self, joint: &[f64]) -> Vec<f64> {
+        let mut load = self.factor.body.body.modes.loads(joint);
         load.iter_mut().for_each(|p| *p = -*p);
         // What turns the ring goes through its seat too.
         if let Some(frame) = &self.frame {
             load.iter_mut().zip(&frame.of_ring).for_each(|(p, f)| *p += f);
         }
-        Some(load)
+        load
     }
 
     fn load_body(&mut self, load: &[f64]) {
