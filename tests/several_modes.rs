@@ -51,12 +51,11 @@ fn a_list_has_its_natural_modes() {
     let [fronts, rears] =
         ["front", "rear"].map(|name| column(&dir, &format!("out/{name}/modes.csv"), "kinetic_balls"));
     (0..24).for_each(|i| assert_close("balls", fronts[i] + rears[i], balls[i], 1e-12));
-    // The largest displacement of all is 1.
+    // The largest displacement of a bearing or component of the shaft is 1.
     let shaft = Table::read(&dir, "out/mode_shaft.csv");
     let [x, y, z] = ["x", "y", "z"].map(|name| shaft.column(name));
-    let largest = (0..x.len())
-        .map(|i| x[i].hypot(y[i]).hypot(z[i]))
-        .fold(0.0, f64::max);
+    let components = x.iter().chain(&y).chain(&z);
+    let largest = components.fold(0.0f64, |most, u| most.max(u.abs()));
     assert!((0.5..1.0 + 1e-9).contains(&largest), "{largest}");
     assert!(dir.path("out/front/step_000024.hdf").exists());
     succeeds(&dir, &["plot", "out"]);
@@ -70,18 +69,19 @@ fn a_list_has_its_natural_modes() {
             "campbell",
             "rest.toml",
             "--speeds",
-            "0",
+            "0..1000:1000",
             "--out",
             "campbell",
             "--number",
             "6",
         ],
     );
-    for frequency in column(&dir, "campbell/campbell.csv", "frequency_hz") {
+    let at_rest = column(&dir, "campbell/campbell.csv", "frequency_hz");
+    for frequency in &at_rest[..at_rest.len() / 2] {
         let off = frequencies
             .iter()
             .map(|f| (f / frequency - 1.0).abs())
             .fold(1.0, f64::min);
-        assert!(off < 1e-6 || frequency > frequencies[23], "{frequency}: {off:e}");
+        assert!(off < 1e-6 || *frequency > frequencies[23], "{frequency}: {off:e}");
     }
 }
