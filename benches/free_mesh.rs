@@ -25,7 +25,7 @@ use std::sync::Arc;
 use clock::Runs;
 use contact::Side;
 use dynamics::{Backend, ContactMode, Hold, Model};
-use ring::{Partner, VibratingRing};
+use ring::{Partner, RingToVibrate, VibratingRings};
 use rolling::{DT, Rolling};
 use support::Case;
 use support::rings::{Level, ring_model};
@@ -45,18 +45,16 @@ fn bearing(mesh: &Path) -> Model {
 }
 
 /// The free ring with the factor of K + s M.
-fn alone(model: &Model) -> VibratingRing {
+fn alone(model: &Model) -> VibratingRings {
     let ring = model.rings[0].as_ref().expect("the inner ring");
     // Average acceleration: the effective matrix is 2 / dt^2 M + K / 2.
     let shift = 4.0 / DT.powi(2);
-    VibratingRing::new(
-        "inner",
+    let ring = RingToVibrate {
+        name: "inner",
         ring,
-        Some((Partner::SHAFT, [0.0; 5])),
-        shift,
-        Backend::Auto,
-    )
-    .expect("the ring is held")
+        partner: Some((Partner::SHAFT, [0.0; 5])),
+    };
+    VibratingRings::new(&[ring], shift, Backend::Auto).expect("the ring is held")
 }
 
 fn main() {

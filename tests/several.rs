@@ -36,7 +36,7 @@ fn kind() -> String {
     format!("{kept}\n[inner]\nflexible = false\n\n[outer]\nflexible = false\n")
 }
 
-const PAIR: &str = r#"
+pub const PAIR: &str = r#"
 [[bearing]]
 name = "front"
 position = "60 mm"
@@ -67,7 +67,8 @@ position = "0 mm"
 force = ["300 N", "0 N", "200 N"]
 "#;
 
-fn pair(analysis: &str) -> Dir {
+/// The pair with rigid rings and an analysis in `pair.toml`.
+pub fn pair(analysis: &str) -> Dir {
     let dir = with_type();
     dir.write("pair.toml", format!("{PAIR}\n{analysis}\n"));
     dir
@@ -86,7 +87,7 @@ pub fn flexible_pair(analysis: &str) -> Dir {
 }
 
 #[track_caller]
-fn succeeds(dir: &Dir, arguments: &[&str]) -> Outcome {
+pub fn succeeds(dir: &Dir, arguments: &[&str]) -> Outcome {
     let outcome = dir.raceway(arguments);
     assert_eq!(outcome.code, Some(0), "{arguments:?}: {}", outcome.stderr);
     outcome

@@ -49,6 +49,7 @@ mod rigid_ring;
 mod schedules;
 mod sectors;
 mod several;
+mod several_modes;
 mod shared_housing;
 mod signals;
 mod small_files;

@@ -33,6 +33,7 @@ mod several;
 mod several_campbell;
 mod several_check;
 mod several_ledger;
+mod several_modes;
 mod several_motion;
 mod several_read;
 mod several_ready;

@@ -14,7 +14,7 @@ use results::failure::Failure;
 use results::modes::{ModeFiles, ModesSummary, print_modes};
 use results::snapshot::Snapshot;
 use results::survey::say_doubts;
-use scene::{ModeBody, ModeSupport, Modes, Scene, build_model, doubts};
+use scene::{ModeBody, ModeSupport, Modes, RingName, Scene, SceneBody, build_model, doubts};
 
 use crate::options::Limits;
 use crate::progress::Progress;
@@ -34,13 +34,7 @@ pub fn run(
     limits: &Limits,
     start: Instant,
 ) -> Result<(), Failure> {
-    let ranks = Communicator::world().size();
-    if ranks > 1 {
-        return Err(Failure::User(anyhow!(
-            "the search for modes runs as one process, but the launcher started {ranks} tasks; start one and give it \
-             the cores as threads"
-        )));
-    }
+    require_one_process()?;
     let mut progress = Progress::new(wanted.bodies.len() as u64);
     progress.stage("reading meshes");
     let (model, _) = build_model(scene)?;
@@ -85,6 +79,18 @@ pub fn run(
     Ok(())
 }
 
+/// Fails on several ranks.
+pub fn require_one_process() -> Result<(), Failure> {
+    let ranks = Communicator::world().size();
+    if ranks > 1 {
+        return Err(Failure::User(anyhow!(
+            "the search for modes runs as one process, but the launcher started {ranks} tasks; start one and give it \
+             the cores as threads"
+        )));
+    }
+    Ok(())
+}
+
 /// A body in words, with its support.
 pub fn name(body: ModeBody, wanted: &Modes) -> String {
     let support = match wanted.support {
@@ -126,17 +132,8 @@ fn modes_of(
         ModeSupport::Free => RingSupport::Free,
         ModeSupport::AsHeld => RingSupport::AsHeld,
     };
-    let mut report = |searched: Searched| {
-        if searched.steps.is_multiple_of(PROGRESS_STEPS) {
-            progress.stage(&format!(
-                "{}: {} of {} modes after {} blocks",
-                name(body, wanted),
-                searched.converged,
-                wanted.number,
-                searched.steps
-            ));
-        }
-    };
+    let name_of_body = name(body, wanted);
+    let mut report = |searched: Searched| report(progress, (&name_of_body, wanted.number), searched);
     let mut alone = |side: Side| {
         let ring = model
             .ring(side)
@@ -154,18 +151,38 @@ fn modes_of(
     .map_err(Failure::solving)
 }
 
-/// Warns of modes that a body round the outer ring does not resolve.
-fn beyond_body(scene: &Scene, sets: &[(ModeBody, ModeSet)], wanted: &Modes) -> Option<String> {
-    let body = scene.bodies.iter().flatten().next()?;
+/// Tells how far a search is, from time to time.
+pub fn report(progress: &Progress, (name, number): (&str, usize), searched: Searched) {
+    if searched.steps.is_multiple_of(PROGRESS_STEPS) {
+        progress.stage(&format!(
+            "{name}: {} of {number} modes after {} blocks",
+            searched.converged, searched.steps
+        ));
+    }
+}
+
+/// Warns of modes that a body of a ring does not resolve.
+fn beyond_body(scene: &Scene, sets: &[(ModeBody, ModeSet)], wanted: &Modes) -> Vec<String> {
+    let warning = |body: &SceneBody| {
+        let other = match body.ring {
+            RingName::Inner => ModeBody::Outer,
+            RingName::Outer => ModeBody::Inner,
+        };
+        let in_body = sets.iter().filter(|(of, _)| *of != other);
+        let last = in_body.filter_map(|(of, set)| Some((of, set.modes.last()?.frequency)));
+        let (of, highest) = last.max_by(|a, b| a.1.total_cmp(&b.1))?;
+        beyond(body, &name(*of, wanted), highest)
+    };
+    scene.bodies.iter().flatten().filter_map(warning).collect()
+}
+
+/// Warns where a body keeps too few modes of its own for a frequency, Hz.
+pub fn beyond(body: &SceneBody, name: &str, highest: f64) -> Option<String> {
     let below = body.modes_below?;
-    let in_body = sets.iter().filter(|(body, _)| *body != ModeBody::Inner);
-    let last = in_body.filter_map(|(body, set)| Some((body, set.modes.last()?.frequency)));
-    let (body_of, highest) = last.max_by(|a, b| a.1.total_cmp(&b.1))?;
     (highest > RESOLVED * below).then(|| {
         format!(
-            "{}: the highest mode has {highest:.0} Hz, but body {:?} keeps its own modes up to {below} Hz; raise \
+            "{name}: the highest mode has {highest:.0} Hz, but body {:?} keeps its own modes up to {below} Hz; raise \
              body.modes_below to {:.0} times that frequency or more",
-            name(*body_of, wanted),
             body.name,
             1.0 / RESOLVED
         )
@@ -180,20 +197,21 @@ fn warnings(
 ) -> Vec<String> {
     let mut warnings: Vec<String> = equilibrium.map_or(Vec::new(), |e| e.warnings.clone());
     for (body, set) in sets {
-        if set.modes.len() < wanted.number {
-            warnings.push(format!(
-                "{}: it has only {} modes, not {}",
-                name(*body, wanted),
-                set.modes.len(),
-                wanted.number
-            ));
-        }
+        warnings.extend(too_few(&name(*body, wanted), set.modes.len(), wanted.number));
         let rigid = set.modes.iter().filter(|m| m.is_rigid).count();
         if *body == ModeBody::Bearing && rigid > 0 {
-            warnings.push(format!(
-                "bearing: {rigid} modes are motions without stiffness; balls without load have two each"
-            ));
+            warnings.push(without_stiffness("bearing", rigid));
         }
     }
     warnings
+}
+
+/// Warns where there are fewer modes than were asked for.
+pub fn too_few(name: &str, found: usize, wanted: usize) -> Option<String> {
+    (found < wanted).then(|| format!("{name}: it has only {found} modes, not {wanted}"))
+}
+
+/// Says that some modes have no stiffness.
+pub fn without_stiffness(name: &str, n: usize) -> String {
+    format!("{name}: {n} modes are motions without stiffness; balls without load have two each")
 }

@@ -11,10 +11,8 @@ use results::failure::{Failure, agree, of_all};
 use results::files::{Files, say_folder};
 use results::memory::Forecasts;
 use results::seat::{self, SeatSummaries, SeatSummary};
-use results::several::{
-    ListState, SCENE_TEXT, SeveralFindings, SeveralSummary, SeveralTables, print_solution, print_sweep_head,
-    print_sweep_point,
-};
+use results::several::{ListState, SCENE_TEXT, SeveralFindings, SeveralSummary, SeveralTables};
+use results::several_print::{print_solution, print_sweep_head, print_sweep_point};
 use results::shown::Shown;
 use results::snapshot::Snapshot;
 use results::summary::{Findings, READ, Summary, TOTAL};

@@ -59,7 +59,6 @@ fn diagram(
     let mut progress = Progress::new(speeds.len() as u64);
     progress.stage("reading meshes");
     let (mut assembly, _) = build_assembly(&scene)?;
-    assembly.require_bodies_of_one().map_err(solving)?;
     let mut warnings = all_doubts(&scene, &assembly);
     say_doubts(&warnings);
     let n_free = assembly.shaft.held.iter().filter(|held| held.is_none()).count();

@@ -73,6 +73,10 @@ fn print_analysis(scene: &SeveralScene) {
             "analysis dynamic: {} steps of {} s, a step file of each bearing every {}",
             dynamic.n_steps, dynamic.step, dynamic.output_every
         )),
+        Analysis::Modes(wanted) => print::line(format_args!(
+            "analysis modes, the {} lowest of all bearings with their shaft",
+            wanted.number
+        )),
         _ => print::line(format_args!("analysis static")),
     }
 }

@@ -59,14 +59,6 @@ pub struct AssemblySolution {
 type SettledAssembly = (SettledShaft, Vec<StaticSolution>);
 
 impl Assembly {
-    /// Fails where bearings feel each other through a body that carries several of them.
-    pub fn require_bodies_of_one(&self) -> Result<(), AssemblyError> {
-        match housed_together(&self.bearings).into_iter().next() {
-            Some(housed) => Err(AssemblyError::SharedBody { body: housed.name }),
-            None => Ok(()),
-        }
-    }
-
     /// The bodies that carry several bearings.
     pub fn housed_together(&self) -> Vec<HousedTogether> {
         housed_together(&self.bearings)

@@ -83,23 +83,11 @@ pub enum AssemblyError {
         /// Name of the bearing.
         bearing: String,
     },
-    /// Modes of a shaft on bearings in a body that carries several.
-    #[error(
-        "body {body:?} carries several bearings, which feel each other through it: modes over the speed are not solved \
-         with that; give each bearing a body of its own"
-    )]
-    SharedBody {
-        /// Name of the body.
-        body: String,
-    },
-    /// Stiffness of a bearing that feels others through two bodies.
-    #[error(
-        "bearing {bearing:?} shares a housing and a shaft with other bearings, each a body: its stiffness with both is \
-         not solved; give each bearing a housing of its own, or clamp the rings to the shaft"
-    )]
-    TwoSharedBodies {
-        /// Name of the bearing.
-        bearing: String,
+    /// The search for natural modes failed.
+    #[error(transparent)]
+    Modes {
+        /// Why.
+        source: DynamicsError,
     },
     /// Forces on a body that carries several bearings keep changing.
     #[error(

@@ -10,22 +10,24 @@
 //! until they stay as they are. Their fixed point is found with memory of the last rounds ([`crate::mixing`]): soft
 //! feet, on which all seats move together, would need many rounds or never end otherwise.
 //!
-//! **To first order** each bearing has H ([`dynamics::moved_seat`]) over its place on the shaft and the motion d of its
-//! seat by the others. With F' the part of F between different seats, and all bearings one below the other,
+//! **To first order** each bearing has H ([`dynamics::moved_seat`]) over its place on the shaft, and its balls where
+//! these are kept, q, and the motions d of its seats by the others. With F' the part of F of all bodies between
+//! different seats, and all bearings one below the other,
 //!
 //! ```text
 //! (1 + H_dd F') p = -H_dq q,      r = H_qq q + H_qd F' p
 //! ```
 //!
-//! is what all of them do together when the shaft moves by q at their places.
+//! is what all of them do together when they are moved by q. A bearing may be in two such bodies, a housing and a
+//! shaft.
 
+use std::ops::Range;
 use std::sync::Arc;
 
 use body::{SeatFunctions, SeatTie, Surrounding};
 use contact::Side;
 use dense::{DenseError, DenseLu};
 use dynamics::moved_seat::SeatStiffness;
-use dynamics::stiffness::N_SHAFT;
 use dynamics::{Model, StaticSolution};
 
 use crate::error::AssemblyError;
@@ -110,6 +112,128 @@ pub fn shared_bodies(bearings: &[MountedBearing]) -> Result<Vec<SharedBody>, Ass
     housed_together(bearings).into_iter().map(body).collect()
 }
 
+/// Bearings in bodies, and where each is among all rows and functions.
+struct Coupled<'c> {
+    own: &'c [Option<SeatStiffness>],
+    /// The seats of each bearing.
+    seats: Vec<Vec<CoupledSeat<'c>>>,
+    /// First of the rows that are kept, by bearing, and their number.
+    starts: Vec<usize>,
+    /// Functions of all bodies.
+    n_functions: usize,
+}
+
+/// A seat of a bearing.
+struct CoupledSeat<'c> {
+    body: &'c SharedBody,
+    tie: &'c SeatTie,
+    /// Numbers of all functions of its body.
+    of_body: Range<usize>,
+    /// Numbers of its own functions among those of its bearing.
+    of_bearing: Range<usize>,
+}
+
+/// Loads on all that is kept of bearings in bodies, each in its own frame, by unit motions of it, row-major. `own` are
+/// those of the bearings alone; None of a bearing in no shared body, which has no rows.
+pub fn coupled(bodies: &[SharedBody], own: &[Option<SeatStiffness>]) -> Result<Vec<f64>, DenseError> {
+    let all = Coupled::new(bodies, own);
+    let n = *all.starts.last().expect("there is an end");
+    let columns = all.forces(n)?;
+    let mut coupled = vec![0.0; n * n];
+    for (column, forces) in columns.chunks_exact(all.n_functions).enumerate() {
+        all.add_loads(column, forces, &mut coupled);
+    }
+    Ok(coupled)
+}
+
+impl<'c> Coupled<'c> {
+    fn new(bodies: &'c [SharedBody], own: &'c [Option<SeatStiffness>]) -> Coupled<'c> {
+        let mut all = Coupled {
+            own,
+            seats: own.iter().map(|_| Vec::new()).collect(),
+            starts: vec![0],
+            n_functions: 0,
+        };
+        for own in own {
+            let n = own.as_ref().map_or(0, |own| own.n_kept);
+            all.starts.push(all.starts[all.starts.len() - 1] + n);
+        }
+        for body in bodies {
+            let of_body = all.n_functions..all.n_functions + body.none().len();
+            for (&bearing, (tie, _)) in body.bearings.iter().zip(&body.seats) {
+                let functions = own[bearing].as_ref().map(|own| &own.functions[body.side.index()]);
+                let Some(of_bearing) = functions.cloned().flatten() else {
+                    continue;
+                };
+                all.seats[bearing].push(CoupledSeat {
+                    body,
+                    tie,
+                    of_body: of_body.clone(),
+                    of_bearing,
+                });
+            }
+            all.n_functions = of_body.end;
+        }
+        all
+    }
+
+    /// Forces on the functions of all bodies by unit motions of all `n` rows that are kept, column-major.
+    fn forces(&self, n: usize) -> Result<Vec<f64>, DenseError> {
+        let all = self.n_functions;
+        let mut matrix = vec![0.0; all * all];
+        let mut forces = vec![0.0; all * n];
+        for (bearing, seats) in self.seats.iter().enumerate() {
+            let Some(own) = &self.own[bearing] else { continue };
+            for seat in seats {
+                for (k, function) in seat.tie.own().enumerate() {
+                    let row = seat.of_body.start + function;
+                    let (by_kept, by_seats) = own.function_row(seat.of_bearing.start + k);
+                    for other in seats {
+                        let to = &mut matrix[all * row..][other.of_body.clone()];
+                        let by_seat = &by_seats[other.of_bearing.clone()];
+                        other.body.add_motion(other.tie, by_seat, to);
+                    }
+                    matrix[(all + 1) * row] += 1.0;
+                    for (j, h) in by_kept.iter().enumerate() {
+                        forces[all * (self.starts[bearing] + j) + row] = -h;
+                    }
+                }
+            }
+        }
+        DenseLu::factor(all, &matrix)?.solve(&mut forces, n);
+        Ok(forces)
+    }
+
+    /// Adds the loads by one of the motions, under which forces act on the bodies.
+    fn add_loads(&self, column: usize, forces: &[f64], coupled: &mut [f64]) {
+        let n = self.starts[self.own.len()];
+        for (bearing, seats) in self.seats.iter().enumerate() {
+            let Some(own) = &self.own[bearing] else { continue };
+            let moved: Vec<Vec<f64>> = seats.iter().map(|seat| seat.moved_by(forces)).collect();
+            let start = self.starts[bearing];
+            for i in 0..own.n_kept {
+                let (by_kept, by_seats) = own.kept_row(i);
+                let through = seats.iter().zip(&moved).flat_map(|(seat, moved)| {
+                    let by_seat = by_seats[seat.of_bearing.clone()].iter();
+                    by_seat.zip(moved).map(|(h, d)| h * d)
+                });
+                let through: f64 = through.sum();
+                let direct = column.checked_sub(start).and_then(|j| by_kept.get(j));
+                coupled[n * (start + i) + column] = direct.copied().unwrap_or(0.0) + through;
+            }
+        }
+    }
+}
+
+impl CoupledSeat<'_> {
+    /// Its motion by forces on the other seats of its body.
+    fn moved_by(&self, forces: &[f64]) -> Vec<f64> {
+        let mut others = forces[self.of_body.clone()].to_vec();
+        others[self.tie.own()].fill(0.0);
+        self.tie.motion_by(&others)
+    }
+}
+
 impl SharedBody {
     /// Tells its bearings what the others press on it: `forces` over the functions of all its seats, N.
     pub fn tell(&self, forces: &[f64], bearings: &mut [MountedBearing]) {
@@ -151,44 +275,6 @@ impl SharedBody {
     /// Numbers of its bearings, in the order of its seats.
     pub fn bearings(&self) -> &[usize] {
         &self.bearings
-    }
-
-    /// Loads on all its bearings, each in its own frame, by a unit motion of each of their places on the shaft,
-    /// row-major over (bearing, dof). `own` are those of the bearings alone.
-    pub fn coupled(&self, own: &[SeatStiffness]) -> Result<Vec<f64>, DenseError> {
-        let (all, n) = (self.none().len(), N_SHAFT * own.len());
-        let mut matrix = vec![0.0; all * all];
-        let mut forces = vec![0.0; all * n];
-        for (number, ((tie, _), own)) in self.seats.iter().zip(own).enumerate() {
-            for (k, row) in tie.own().enumerate() {
-                let (by_shaft, by_seat) = own.row(N_SHAFT + k).split_at(N_SHAFT);
-                self.add_motion(tie, by_seat, &mut matrix[all * row..all * (row + 1)]);
-                matrix[(all + 1) * row] += 1.0;
-                for (j, h) in by_shaft.iter().enumerate() {
-                    forces[all * (N_SHAFT * number + j) + row] = -h;
-                }
-            }
-        }
-        DenseLu::factor(all, &matrix)?.solve(&mut forces, n);
-        let mut coupled = vec![0.0; n * n];
-        for (column, forces) in forces.chunks_exact(all).enumerate() {
-            for (number, ((tie, _), own)) in self.seats.iter().zip(own).enumerate() {
-                let mut others = forces.to_vec();
-                others[tie.own()].fill(0.0);
-                let moved = tie.motion_by(&others);
-                for i in 0..N_SHAFT {
-                    let (by_shaft, by_seat) = own.row(i).split_at(N_SHAFT);
-                    let through: f64 = by_seat.iter().zip(&moved).map(|(h, d)| h * d).sum();
-                    let direct = if column / N_SHAFT == number {
-                        by_shaft[column % N_SHAFT]
-                    } else {
-                        0.0
-                    };
-                    coupled[n * (N_SHAFT * number + i) + column] = direct + through;
-                }
-            }
-        }
-        Ok(coupled)
     }
 
     /// Adds a row over the motion of a seat, times what forces on the other seats move it, to a row over forces.

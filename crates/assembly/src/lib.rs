@@ -18,6 +18,7 @@ pub mod beam;
 mod error;
 mod housing;
 mod mixing;
+pub mod modes;
 pub mod motion;
 pub mod newton;
 pub mod place;

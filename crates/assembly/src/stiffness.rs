@@ -9,14 +9,15 @@
 //! matrices of the bearings to the point. A beam gives way between, so that its matrix is the inverse of the compliance
 //! of the point.
 
+use contact::Side;
 use dense::DenseLu;
-use dynamics::moved_seat::SeatStiffness;
+use dynamics::moved_seat::{MovedSeats, SeatStiffness};
 use dynamics::stiffness::{DampingLaws, N_SHAFT, ShaftMatrix};
 use dynamics::{Linearisation, StaticSolver};
 
 use crate::assembly::{Assembly, AssemblySolution, AssemblySolver};
 use crate::error::AssemblyError;
-use crate::housing::SharedBody;
+use crate::housing::{SharedBody, coupled};
 use crate::shaft::{Station, applied};
 
 /// Bearings of an assembly to first order.
@@ -27,8 +28,19 @@ pub struct LinearAssembly {
     pub stiffness: Vec<ShaftMatrix>,
     /// Damping of each there, if there is any.
     pub damping: Vec<Option<ShaftMatrix>>,
-    /// What bearings do to each other through a body that carries them.
+    /// What bearings do to each other through bodies that carry them.
     pub couplings: Vec<BodyCoupling>,
+    /// Bearings in such bodies with their balls.
+    pub in_bodies: Option<InBodies>,
+}
+
+/// Bearings in bodies that carry several, with their balls.
+pub struct InBodies {
+    /// First row of each: its place on the shaft, then [radial, axial] of its balls, in its own frame; the last is
+    /// their number. A bearing in no such body has no rows.
+    pub starts: Vec<usize>,
+    /// Stiffness, row-major.
+    pub stiffness: Vec<f64>,
 }
 
 /// Load on a bearing by the motion of the shaft at another, through a body that carries both, in the shaft's frame.
@@ -55,6 +67,7 @@ impl LinearAssembly {
             stiffness: Vec::new(),
             damping: Vec::new(),
             couplings: Vec::new(),
+            in_bodies: None,
         };
         for (i, bearing) in assembly.bearings.iter().enumerate() {
             let fail = AssemblyError::of_bearing(&bearing.name);
@@ -67,58 +80,73 @@ impl LinearAssembly {
             linear.damping.push(damping.as_ref().map(turned));
             linear.bearings.push(found);
         }
-        let bodies = solver.bodies();
-        for (i, bearing) in assembly.bearings.iter().enumerate() {
-            if bodies.iter().filter(|body| body.bearings().contains(&i)).count() > 1 {
-                return Err(AssemblyError::TwoSharedBodies {
-                    bearing: bearing.name.clone(),
-                });
-            }
-        }
-        for body in bodies {
-            linear.couple(body, (assembly, solver, solution))?;
-        }
+        linear.couple(assembly, solver, solution)?;
         Ok(linear)
     }
 
-    /// Lets the bearings in a body feel each other.
+    /// Lets the bearings in bodies feel each other.
     fn couple(
         &mut self,
-        body: &SharedBody,
-        (assembly, solver, solution): (&Assembly, &AssemblySolver, &AssemblySolution),
+        assembly: &Assembly,
+        solver: &AssemblySolver,
+        solution: &AssemblySolution,
     ) -> Result<(), AssemblyError> {
-        let own = |&i: &usize| {
-            let (found, linear) = (&solution.bearings[i], &self.bearings[i]);
-            let own = SeatStiffness::new(body.side(), solver.of_bearing(i), found, linear);
-            let own = own.map_err(AssemblyError::of_bearing(&assembly.bearings[i].name))?;
-            Ok(own.expect("a bearing in a body is tied to it"))
+        let bodies = solver.bodies();
+        if bodies.is_empty() {
+            return Ok(());
+        }
+        let (mut of_shaft, mut of_balls) = (Vec::new(), Vec::new());
+        for (i, bearing) in assembly.bearings.iter().enumerate() {
+            let around = bodies.iter().filter(|body| body.bearings().contains(&i));
+            let sides: Vec<Side> = around.map(SharedBody::side).collect();
+            if sides.is_empty() {
+                of_shaft.push(None);
+                of_balls.push(None);
+                continue;
+            }
+            let fail = AssemblyError::of_bearing(&bearing.name);
+            let factors = solver.of_bearing(i);
+            let seats = MovedSeats::new(&sides, factors, &solution.bearings[i], &self.bearings[i]);
+            of_shaft.push(Some(seats.of_shaft().map_err(fail)?));
+            of_balls.push(Some(seats.of_shaft_and_balls().map_err(fail)?));
+        }
+        let together = |own: &[Option<SeatStiffness>]| -> Result<InBodies, AssemblyError> {
+            let stiffness = coupled(bodies, own).map_err(|source| AssemblyError::Matrix { source })?;
+            let mut starts = vec![0];
+            for own in own {
+                let n = own.as_ref().map_or(0, |own| own.n_kept);
+                starts.push(starts[starts.len() - 1] + n);
+            }
+            Ok(InBodies { starts, stiffness })
         };
-        let own = body
-            .bearings()
-            .iter()
-            .map(own)
-            .collect::<Result<Vec<_>, AssemblyError>>()?;
-        let coupled = body
-            .coupled(&own)
-            .map_err(|source| AssemblyError::Matrix { source })?;
-        let n = N_SHAFT * own.len();
-        for (k, &loaded) in body.bearings().iter().enumerate() {
-            for (l, &moved) in body.bearings().iter().enumerate() {
-                let entry = |i: usize, j: usize| coupled[n * (N_SHAFT * k + i) + N_SHAFT * l + j];
-                let block = std::array::from_fn(|i| std::array::from_fn(|j| entry(i, j)));
-                let [to, from] = [loaded, moved].map(|b| assembly.bearings[b].place.orientation);
-                let stiffness = to.turned_block(from, &block);
-                match loaded == moved {
-                    true => self.stiffness[loaded] = stiffness,
-                    false => self.couplings.push(BodyCoupling {
-                        loaded,
-                        moved,
-                        stiffness,
-                    }),
+        self.take_blocks(assembly, bodies, &together(&of_shaft)?);
+        self.in_bodies = Some(together(&of_balls)?);
+        Ok(())
+    }
+
+    /// Takes the matrices of bearings in bodies, and what they do to each other, from those of all.
+    fn take_blocks(&mut self, assembly: &Assembly, bodies: &[SharedBody], all: &InBodies) {
+        let n = all.starts[assembly.bearings.len()];
+        for group in joined(bodies) {
+            for &loaded in &group {
+                for &moved in &group {
+                    let entry = |i: usize, j: usize| {
+                        all.stiffness[n * (all.starts[loaded] + i) + all.starts[moved] + j]
+                    };
+                    let block = std::array::from_fn(|i| std::array::from_fn(|j| entry(i, j)));
+                    let [to, from] = [loaded, moved].map(|b| assembly.bearings[b].place.orientation);
+                    let stiffness = to.turned_block(from, &block);
+                    match loaded == moved {
+                        true => self.stiffness[loaded] = stiffness,
+                        false => self.couplings.push(BodyCoupling {
+                            loaded,
+                            moved,
+                            stiffness,
+                        }),
+                    }
                 }
             }
         }
-        Ok(())
     }
 
     /// Adds what bearings at these stations do to each other to a matrix of the shaft of `n` dofs.
@@ -169,6 +197,27 @@ impl LinearAssembly {
         let inverse = DenseLu::factor(N_SHAFT, &compliance).map_err(matrix)?.inverse();
         Ok(square(&inverse))
     }
+}
+
+/// The bearings that feel each other, directly or by others.
+fn joined(bodies: &[SharedBody]) -> Vec<Vec<usize>> {
+    let mut groups: Vec<Vec<usize>> = Vec::new();
+    for body in bodies {
+        let mut group = body.bearings().to_vec();
+        groups.retain(|known| {
+            let meets = known.iter().any(|bearing| group.contains(bearing));
+            if meets {
+                group.extend(known);
+            }
+            !meets
+        });
+        if group.len() > body.bearings().len() {
+            group.sort_unstable();
+            group.dedup();
+        }
+        groups.push(group);
+    }
+    groups
 }
 
 fn square(entries: &[f64]) -> ShaftMatrix {

@@ -5,7 +5,8 @@
 //! ```
 //!
 //! As [`dynamics::whirl`] for one bearing: M has the shaft, the inner rings as rigid bodies at their places, and the
-//! balls; G is the gyroscopic matrix of all that turns, W the speed. What that leaves out is left out here too.
+//! balls; G is the gyroscopic matrix of all that turns, W the speed. What that leaves out is left out here too. Bodies
+//! that carry several bearings couple them by their stiffness at rest; one on the shaft turns as a rigid one.
 
 use dynamics::bodies::AXES;
 use dynamics::stiffness::N_SHAFT;
@@ -14,7 +15,7 @@ use dynamics::whirl::{ShaftRow, TurningShaft, WhirlMatrices, is_held, turning_in
 use crate::assembly::Assembly;
 use crate::error::AssemblyError;
 use crate::shaft::{ShaftBody, product};
-use crate::stiffness::LinearAssembly;
+use crate::stiffness::{InBodies, LinearAssembly};
 
 /// The shaft with the inner rings that turn with it.
 pub fn turning_shaft(assembly: &Assembly) -> Result<ShaftBody, AssemblyError> {
@@ -36,27 +37,21 @@ pub fn equations(
     linear: &LinearAssembly,
     speed: f64,
 ) -> Result<TurningShaft, AssemblyError> {
-    assembly.require_bodies_of_one()?;
     let n_shaft = shaft.n();
     let balls = |b: usize| 2 * assembly.bearings[b].model.geometry.n_balls;
     let n = n_shaft + (0..assembly.bearings.len()).map(balls).sum::<usize>();
-    let spread = |matrix: &[f64], factor: f64| {
-        let mut whole = vec![0.0; n * n];
-        for (row, own) in whole.chunks_exact_mut(n).zip(matrix.chunks_exact(n_shaft)) {
-            row.iter_mut().zip(own).for_each(|(sum, x)| *sum = factor * x);
-        }
-        whole
-    };
-    let mut all = WhirlMatrices {
-        n,
-        mass: spread(&shaft.mass, 1.0),
-        rates: spread(&shaft.gyroscopic, speed),
-        stiffness: spread(&shaft.stiffness, 1.0),
-    };
+    let mut all = of_shaft(shaft, n, speed);
     let free: Vec<usize> = (0..n_shaft).filter(|&i| shaft.held[i].is_none()).collect();
     require_inertia(&all, &free)?;
     let mut rows = free.clone();
     let mut first = n_shaft;
+    let mut places = Vec::new();
+    let is_in_bodies = |b: usize| {
+        linear
+            .in_bodies
+            .as_ref()
+            .is_some_and(|all| all.starts[b] < all.starts[b + 1])
+    };
     for (b, (bearing, mount)) in assembly.bearings.iter().zip(assembly.mounts()).enumerate() {
         let fail = AssemblyError::of_bearing(&bearing.name);
         let own = linear.bearings[b].of_shaft_and_balls().map_err(fail)?;
@@ -70,9 +65,11 @@ pub fn equations(
             shaft: mount.station.first,
             balls: first,
         };
-        at.add(own.n, &own.stiffness, n, &mut all.stiffness);
+        if !is_in_bodies(b) {
+            at.add(&at, (own.n, &own.stiffness), n, &mut all.stiffness);
+        }
         if let Some(damping) = &own.damping {
-            at.add(own.n, damping, n, &mut all.rates);
+            at.add(&at, (own.n, damping), n, &mut all.rates);
         }
         for i in 0..balls(b) {
             all.mass[(n + 1) * (first + i)] = bearing.model.ball_mass();
@@ -81,6 +78,10 @@ pub fn equations(
             }
         }
         first += balls(b);
+        places.push(at);
+    }
+    if let Some(bodies) = &linear.in_bodies {
+        add_bodies(bodies, &places, n, &mut all.stiffness);
     }
     let row = |&i: &usize| ShaftRow {
         node: i / N_SHAFT,
@@ -88,6 +89,40 @@ pub fn equations(
     };
     let shaft_rows = free.iter().map(row).collect();
     Ok(TurningShaft::of_matrices(all.of_rows(&rows), shaft_rows, speed))
+}
+
+/// Matrices of the shaft at a speed, of `n` rows with room for what follows its dofs.
+fn of_shaft(shaft: &ShaftBody, n: usize, speed: f64) -> WhirlMatrices {
+    let spread = |matrix: &[f64], factor: f64| {
+        let mut whole = vec![0.0; n * n];
+        for (row, own) in whole.chunks_exact_mut(n).zip(matrix.chunks_exact(shaft.n())) {
+            row.iter_mut().zip(own).for_each(|(sum, x)| *sum = factor * x);
+        }
+        whole
+    };
+    WhirlMatrices {
+        n,
+        mass: spread(&shaft.mass, 1.0),
+        rates: spread(&shaft.gyroscopic, speed),
+        stiffness: spread(&shaft.stiffness, 1.0),
+    }
+}
+
+/// Adds the stiffness of bearings that share bodies to one of `n` rows.
+fn add_bodies(bodies: &InBodies, places: &[BearingRows], n: usize, to: &mut [f64]) {
+    let InBodies { starts, stiffness } = bodies;
+    let n_coupled = starts[places.len()];
+    for (loaded, at) in places.iter().enumerate() {
+        for (moved, from) in places.iter().enumerate() {
+            let columns = starts[moved]..starts[moved + 1];
+            let rows = stiffness
+                .chunks_exact(n_coupled)
+                .take(starts[loaded + 1])
+                .skip(starts[loaded]);
+            let block: Vec<f64> = rows.flat_map(|row| &row[columns.clone()]).copied().collect();
+            at.add(from, (columns.len(), &block), n, to);
+        }
+    }
 }
 
 /// Where the dofs of a bearing are among all rows: its axis point moves by `motion` times five dofs of the shaft.
@@ -98,27 +133,31 @@ struct BearingRows {
 }
 
 impl BearingRows {
-    /// Adds a matrix of `m` rows over the axis point and the balls to one of `n` rows.
-    fn add(&self, m: usize, own: &[f64], n: usize, to: &mut [f64]) {
-        // Of a row of the bearing: the rows among all, and their factors.
-        let spread = |i: usize| -> Vec<(usize, f64)> {
-            match i {
-                0..N_SHAFT => (0..N_SHAFT)
-                    .map(|k| (self.shaft + k, self.motion[i][k]))
-                    .collect(),
-                _ => vec![(self.balls + i - N_SHAFT, 1.0)],
-            }
-        };
-        let spreads: Vec<_> = (0..m).map(spread).collect();
-        for (i, rows) in spreads.iter().enumerate() {
-            for (j, columns) in spreads.iter().enumerate() {
-                let entry = own[m * i + j];
-                for (row, a) in rows {
+    /// Adds a matrix of `m` columns, over the loads on this bearing's axis point and balls by motions of another's, to
+    /// one of `n` rows.
+    fn add(&self, moved: &BearingRows, (m, own): (usize, &[f64]), n: usize, to: &mut [f64]) {
+        if m == 0 {
+            return;
+        }
+        let columns: Vec<_> = (0..m).map(|j| moved.spread(j)).collect();
+        for (i, row) in own.chunks_exact(m).enumerate() {
+            for (row_of, a) in self.spread(i) {
+                for (entry, columns) in row.iter().zip(&columns) {
                     for (column, b) in columns {
-                        to[n * row + column] += a * entry * b;
+                        to[n * row_of + column] += a * entry * b;
                     }
                 }
             }
+        }
+    }
+
+    /// Of a row of the bearing: the rows among all, and their factors.
+    fn spread(&self, i: usize) -> Vec<(usize, f64)> {
+        match i {
+            0..N_SHAFT => (0..N_SHAFT)
+                .map(|k| (self.shaft + k, self.motion[i][k]))
+                .collect(),
+            _ => vec![(self.balls + i - N_SHAFT, 1.0)],
         }
     }
 }

@@ -1,4 +1,4 @@
-//! A bearing in a body that others move as well, about an equilibrium to first order.
+//! A bearing in bodies that others move as well, about an equilibrium to first order.
 //!
 //! Others move the seat of a ring by d, of an inner ring beside the shaft, a number for each of its functions. Where no
 //! contact force changes, that moves the contacts by L d and changes the forces on the ring by S d
@@ -9,14 +9,17 @@
 //! ```
 //!
 //! So d takes rows of its own beside those of the bearing ([`crate::stiffness`]): -C^-1 L in the rows of g and
-//! L^T C^-1 L + S in its own. All but shaft and d are condensed out:
+//! L^T C^-1 L + S in its own. Both rings may be in such bodies. All but d and what is kept of shaft and balls, q, are
+//! condensed out:
 //!
 //! ```text
 //! |  dr |   | H_qq  H_qd |  | dq |
 //! | -dp | = | H_dq  H_dd |  | dd |
 //! ```
 //!
-//! r is the load on the shaft, q its displacement. Cost: the compliance of the contacts once more, and dense factors.
+//! r is the load on q. Cost: the compliance of the contacts once more, and dense factors.
+
+use std::ops::Range;
 
 use contact::Side;
 
@@ -29,46 +32,107 @@ use ring::statics::SeatResponse;
 
 /// H of the module.
 pub struct SeatStiffness {
-    /// Functions of the seat.
-    pub n_functions: usize,
-    /// Over the shaft (x, y, z, tilt_x, tilt_y), then the functions, row-major.
-    pub matrix: Vec<f64>,
+    /// Rows of shaft (x, y, z, tilt_x, tilt_y) and balls ([radial, axial] each) that come first.
+    pub n_kept: usize,
+    /// Numbers of the functions of the seats of both rings among all functions, inner first; None of a ring that no
+    /// one else moves.
+    pub functions: [Option<Range<usize>>; 2],
+    /// Number of all functions.
+    n_functions: usize,
+    /// Over what is kept, then the functions, row-major.
+    matrix: Vec<f64>,
 }
 
-impl SeatStiffness {
-    /// Of a bearing that was linearised anew, and its ring of one side; None where no body is tied to that.
+/// The seat of a ring in a body that others move.
+struct MovedSeat<'l> {
+    ports: &'l RingPorts,
+    response: SeatResponse,
+    first: usize,
+}
+
+/// A bearing with its moved seats.
+pub struct MovedSeats<'l> {
+    linear: &'l Linearisation,
+    seats: Vec<MovedSeat<'l>>,
+    functions: [Option<Range<usize>>; 2],
+    n_functions: usize,
+}
+
+impl<'l> MovedSeats<'l> {
+    /// Of a bearing that was linearised anew, whose rings of these sides are in bodies that others move.
     pub fn new(
-        side: Side,
+        sides: &[Side],
         solver: &StaticSolver,
         solution: &StaticSolution,
-        linear: &Linearisation,
-    ) -> Result<Option<SeatStiffness>, DynamicsError> {
-        let (Some(ring), Some(ports)) = (solver.ring(side), &linear.ports[side.index()]) else {
-            return Ok(None);
+        linear: &'l Linearisation,
+    ) -> MovedSeats<'l> {
+        let mut all = MovedSeats {
+            linear,
+            seats: Vec::new(),
+            functions: [None, None],
+            n_functions: 0,
         };
-        let footprints = solution.footprints(side).iter();
-        let weights: Vec<_> = footprints.map(|f| f.weights.clone()).collect();
-        let Some(response) = ring.solver.seat_response(&weights) else {
-            return Ok(None);
-        };
-        SeatStiffness::condensed(linear, ports, &response).map(Some)
+        for &side in sides {
+            let (Some(ring), Some(ports)) = (solver.ring(side), &linear.ports[side.index()]) else {
+                continue;
+            };
+            let footprints = solution.footprints(side).iter();
+            let weights: Vec<_> = footprints.map(|f| f.weights.clone()).collect();
+            if let Some(response) = ring.solver.seat_response(&weights) {
+                let first = all.n_functions;
+                all.n_functions += response.n_functions;
+                all.functions[side.index()] = Some(first..all.n_functions);
+                all.seats.push(MovedSeat {
+                    ports,
+                    response,
+                    first,
+                });
+            }
+        }
+        all
     }
 
-    fn condensed(
-        linear: &Linearisation,
-        ports: &RingPorts,
-        response: &SeatResponse,
-    ) -> Result<SeatStiffness, DynamicsError> {
-        let (own, m) = (linear.n, response.n_functions);
-        let (n, kept) = (own + m, N_SHAFT + m);
-        // The shaft, the seat, then all that is condensed out.
-        let place = |unknown: usize| unknown + if unknown < N_SHAFT { 0 } else { m };
+    /// H over the shaft.
+    pub fn of_shaft(&self) -> Result<SeatStiffness, DynamicsError> {
+        self.condensed(N_SHAFT)
+    }
+
+    /// H over shaft and balls.
+    pub fn of_shaft_and_balls(&self) -> Result<SeatStiffness, DynamicsError> {
+        self.condensed(N_SHAFT + 2 * self.linear.n_balls)
+    }
+
+    /// H over the first rows of the bearing.
+    fn condensed(&self, n_kept: usize) -> Result<SeatStiffness, DynamicsError> {
+        let (own, m) = (self.linear.n, self.n_functions);
+        let n = own + m;
+        // What is kept, the seats, then all that is condensed out.
+        let place = |unknown: usize| unknown + if unknown < n_kept { 0 } else { m };
         let mut matrix = vec![0.0; n * n];
-        for (i, row) in linear.stiffness.chunks_exact(own).enumerate() {
+        for (i, row) in self.linear.stiffness.chunks_exact(own).enumerate() {
             for (j, entry) in row.iter().enumerate() {
                 matrix[n * place(i) + place(j)] = *entry;
             }
         }
+        for seat in &self.seats {
+            seat.add(n, n_kept + seat.first, place, &mut matrix);
+        }
+        let condensation = Condensation::new(n, n_kept + m, &matrix)
+            .map_err(|source| DynamicsError::ContactSystem { source })?;
+        Ok(SeatStiffness {
+            n_kept,
+            functions: self.functions.clone(),
+            n_functions: m,
+            matrix: condensation.apply(&matrix),
+        })
+    }
+}
+
+impl MovedSeat<'_> {
+    /// Adds its rows to a matrix of `n` rows, where its functions begin at `first` and unknowns of the bearing are at
+    /// their `place`.
+    fn add(&self, n: usize, first: usize, place: impl Fn(usize) -> usize, matrix: &mut [f64]) {
+        let (ports, response, m) = (self.ports, &self.response, self.response.n_functions);
         // C^-1 L by rows of g.
         let motion = &response.motion;
         let pulled = |row: &[f64], function: usize| -> f64 {
@@ -79,28 +143,29 @@ impl SeatStiffness {
         let pulled: Vec<f64> = rows.flat_map(|row| (0..m).map(move |k| pulled(row, k))).collect();
         for (unknown, row) in ports.unknowns.clone().zip(pulled.chunks_exact(m)) {
             for (function, pull) in row.iter().enumerate() {
-                matrix[n * place(unknown) + N_SHAFT + function] = -pull;
-                matrix[n * (N_SHAFT + function) + place(unknown)] = -pull;
+                matrix[n * place(unknown) + first + function] = -pull;
+                matrix[n * (first + function) + place(unknown)] = -pull;
             }
         }
         for (i, row) in response.forces.chunks_exact(m).enumerate() {
             for (j, force) in row.iter().enumerate() {
                 let contacts = motion.chunks_exact(m).zip(pulled.chunks_exact(m));
                 let of_contacts: f64 = contacts.map(|(l, pull)| l[i] * pull[j]).sum();
-                matrix[n * (N_SHAFT + i) + N_SHAFT + j] = force + of_contacts;
+                matrix[n * (first + i) + first + j] = force + of_contacts;
             }
         }
-        let condensation =
-            Condensation::new(n, kept, &matrix).map_err(|source| DynamicsError::ContactSystem { source })?;
-        Ok(SeatStiffness {
-            n_functions: m,
-            matrix: condensation.apply(&matrix),
-        })
+    }
+}
+
+impl SeatStiffness {
+    /// A row of what is kept: by what is kept, and by all functions.
+    pub fn kept_row(&self, row: usize) -> (&[f64], &[f64]) {
+        let n = self.n_kept + self.n_functions;
+        self.matrix[n * row..n * (row + 1)].split_at(self.n_kept)
     }
 
-    /// A row: of the shaft's dofs, then of the functions.
-    pub fn row(&self, row: usize) -> &[f64] {
-        let n = N_SHAFT + self.n_functions;
-        &self.matrix[n * row..n * (row + 1)]
+    /// The same of a function.
+    pub fn function_row(&self, function: usize) -> (&[f64], &[f64]) {
+        self.kept_row(self.n_kept + function)
     }
 }

@@ -73,7 +73,7 @@ pub struct Linearisation {
     /// Over shaft, balls, seat and ports of the rings, row-major.
     pub(crate) stiffness: Vec<f64>,
     damping: Option<Vec<f64>>,
-    n_balls: usize,
+    pub(crate) n_balls: usize,
     /// Where rings meet their contacts, by side; only of one that was found anew.
     pub(crate) ports: [Option<RingPorts>; 2],
     /// What loads on the shaft add to its stiffness because their moments change as it tilts.
@@ -210,7 +210,7 @@ fn not_solved(source: &DenseError) -> DynamicsError {
 
 /// Bodies and contacts of a solution whose shaft may move in all its dofs, on rings with the compliance of their
 /// contacts where these stand, or without `solver` with that of the solution.
-fn released<'m>(
+pub(crate) fn released<'m>(
     model: &'m Model,
     solver: Option<&StaticSolver>,
     solution: &StaticSolution,

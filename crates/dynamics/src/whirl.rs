@@ -79,14 +79,19 @@ pub struct WhirlMode {
     pub shaft_share: f64,
 }
 
-/// Rigid inertia of all that turns with the shaft: of the shaft, a rigid ring on it, and a flexible inner ring.
-pub fn turning_inertia(model: &Model) -> Result<RigidInertia, DynamicsError> {
-    let mut sum = RigidInertia {
+/// Rigid inertia of the shaft of a bearing and of a rigid ring on it.
+pub fn shaft_inertia(model: &Model) -> RigidInertia {
+    RigidInertia {
         mass: model.shaft_mass,
         first_moment: 0.0,
         transverse: model.shaft_inertia.transverse,
         polar: model.shaft_inertia.polar,
-    };
+    }
+}
+
+/// Rigid inertia of all that turns with the shaft: of the shaft, a rigid ring on it, and a flexible inner ring.
+pub fn turning_inertia(model: &Model) -> Result<RigidInertia, DynamicsError> {
+    let mut sum = shaft_inertia(model);
     let side = Side::Inner;
     if let Some(ring) = model.ring(side) {
         let settings = BodySettings {

@@ -143,6 +143,7 @@ fn with_names(found: anyhow::Result<Vec<(String, Figure)>>) -> anyhow::Result<Ve
 pub fn figures(dir: &Path, choice: &Choice) -> Result<Figures, Failure> {
     if several::is_of_several(dir) {
         let mut drawn = with_names(several::figures(dir))?;
+        drawn.extend(modes::figures(dir)?);
         drawn.extend(linear_figures(dir)?);
         let problems = Vec::new();
         return Ok(Figures { drawn, problems });

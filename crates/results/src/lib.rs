@@ -36,6 +36,8 @@ mod region;
 mod ring_stress;
 pub mod seat;
 pub mod several;
+pub mod several_modes;
+pub mod several_print;
 pub mod several_stiffness;
 pub mod shown;
 pub mod snapshot;

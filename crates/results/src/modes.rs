@@ -24,7 +24,6 @@ use super::files::{mesh_file, say_folder, storage};
 use super::folder;
 use super::mounting::{ClearanceSummary, FitSummary, fits};
 use super::ring_stress::{Basis, RingStress, ShownRing};
-use super::seat::is_tied;
 use super::shown::Turn;
 use super::snapshot::Snapshot;
 use super::summary::{
@@ -38,7 +37,7 @@ use crate::failure::Failure;
 const AMPLITUDE: f64 = 1e-3;
 
 /// Name of the table.
-const TABLE: &str = "modes.csv";
+pub(crate) const TABLE: &str = "modes.csv";
 
 const COLUMNS: [&str; 12] = [
     "step",
@@ -55,8 +54,8 @@ const COLUMNS: [&str; 12] = [
     "kinetic_shaft",
 ];
 
-/// One more column where the outer ring is in an elastic body: its share, part of that of the ring.
-const OF_BODY: &str = "kinetic_body";
+/// One more column where a ring is in an elastic body, inner first: its share, part of that of the ring.
+const OF_BODIES: [&str; 2] = ["kinetic_shaft_body", "kinetic_body"];
 
 /// The open files of a run.
 pub struct ModeFiles {
@@ -71,13 +70,9 @@ impl ModeFiles {
     pub fn create(scene: &Scene, model: &Model, dir: &Path) -> Result<ModeFiles, Failure> {
         let output = Output::create_in(folder::prepare(dir)?, &mesh_file(scene, model)?, storage(scene))?;
         say_folder(dir);
-        let mut columns: Vec<String> = COLUMNS.map(str::to_string).to_vec();
-        if is_tied(model) {
-            columns.push(OF_BODY.to_string());
-        }
         Ok(ModeFiles {
             output,
-            table: tables::create(dir, TABLE, &columns)?,
+            table: tables::create(dir, TABLE, &columns(tied_sides(model)))?,
             stress: RingStress::new(model, scene)?,
             step: 0,
         })
@@ -95,10 +90,7 @@ impl ModeFiles {
             self.step += 1;
             let (points, cell_fields) = self.fields(model, mode);
             // The table first: a step vouches for it.
-            let mut row = cells(self.step, body, i + 1, mode);
-            if is_tied(model) {
-                row.push(format!("{:?}", mode.kinetic_body));
-            }
+            let row = cells((self.step, i + 1), body.typed(), mode, tied_sides(model));
             tables::append(&mut self.table, TABLE, [row])?;
             self.table.get_ref().handle()?.sync_data()?;
             let record = StepRecord {
@@ -151,7 +143,7 @@ impl ModeFiles {
             displacement.push([radial * cos, radial * sin, axial].map(|u| AMPLITUDE * u));
         }
         let bodies = bodies_of(model).into_iter().map(|body| {
-            BodyField::standing(match &mode.shape.body {
+            BodyField::standing(match &mode.shape.bodies[body.side.index()] {
                 Some(shape) => shape.iter().map(|u| AMPLITUDE * u).collect(),
                 None => vec![0.0; body.mesh.n_dofs()],
             })
@@ -165,18 +157,36 @@ impl ModeFiles {
     }
 }
 
-fn cells(step: u64, body: ModeBody, number: usize, mode: &Mode) -> Vec<String> {
-    let mut cells = vec![step.to_string(), body.typed().to_string(), number.to_string()];
+/// Whether the rings are in elastic bodies, inner first.
+pub(crate) fn tied_sides(model: &Model) -> [bool; 2] {
+    Side::BOTH.map(|side| model.tied(side).is_some())
+}
+
+/// Columns of the table.
+pub(crate) fn columns(tied: [bool; 2]) -> Vec<String> {
+    let of_bodies = (0..2).filter(|&i| tied[i]).map(|i| OF_BODIES[i]);
+    COLUMNS.into_iter().chain(of_bodies).map(str::to_string).collect()
+}
+
+/// Cells of a row.
+pub(crate) fn cells((step, number): (u64, usize), body: &str, mode: &Mode, tied: [bool; 2]) -> Vec<String> {
+    let mut cells = vec![step.to_string(), body.to_string(), number.to_string()];
     cells.extend([mode.frequency, mode.bound, mode.residual].map(|x| format!("{x:?}")));
     cells.push(u8::from(mode.is_rigid).to_string());
     cells.push(format!("{:?}", mode.modal_mass));
     cells.extend(mode.kinetic.map(|x| format!("{x:?}")));
+    let of_bodies = (0..2).filter(|&i| tied[i]);
+    cells.extend(of_bodies.map(|i| format!("{:?}", mode.kinetic_bodies[i])));
     cells
 }
 
 /// Prints the modes of one body.
 pub fn print_modes(name: &str, set: &ModeSet) {
-    let has_body = set.modes.iter().any(|mode| mode.shape.body.is_some());
+    let has_body = |i: usize| set.modes.iter().any(|mode| mode.kinetic_bodies[i] > 0.0);
+    let bodies: Vec<usize> = [1, 0].into_iter().filter(|&i| has_body(i)).collect();
+    let heads = bodies
+        .iter()
+        .map(|&i| format!("  of {} in the body", Side::BOTH[i].name()));
     print::line(format_args!(
         "{name}: {} unknowns, {} blocks, {:.2} s",
         set.n_unknowns,
@@ -185,10 +195,11 @@ pub fn print_modes(name: &str, set: &ModeSet) {
     ));
     print::line(format_args!(
         "mode  frequency Hz    bound Hz  modal kg   kinetic energy: inner  outer  balls  shaft{}",
-        if has_body { "  of outer in the body" } else { "" }
+        heads.collect::<String>()
     ));
     for (i, mode) in set.modes.iter().enumerate() {
         let [inner, outer, balls, shaft] = mode.kinetic;
+        let of_bodies = bodies.iter().map(|&i| format!(" {:6.3}", mode.kinetic_bodies[i]));
         print::line(format_args!(
             "{:4} {:13.4} {:11.1e} {:9.3e} {:22.3} {outer:6.3} {balls:6.3} {shaft:6.3}{}{}",
             i + 1,
@@ -196,11 +207,7 @@ pub fn print_modes(name: &str, set: &ModeSet) {
             mode.bound,
             mode.modal_mass,
             inner,
-            if has_body {
-                format!(" {:6.3}", mode.kinetic_body)
-            } else {
-                String::new()
-            },
+            of_bodies.collect::<String>(),
             if mode.is_rigid { "  without stiffness" } else { "" }
         ));
     }
@@ -220,7 +227,7 @@ pub struct ModesSummary {
     contact_mode: &'static str,
     effects: Vec<&'static str>,
     dofs: BTreeMap<&'static str, usize>,
-    modes: BTreeMap<&'static str, BodySummary>,
+    modes: BTreeMap<&'static str, FrequenciesSummary>,
     /// The equilibrium about which the bearing vibrates; absent for rings alone.
     #[serde(skip_serializing_if = "Option::is_none")]
     shaft: Option<ShaftSummary>,
@@ -236,12 +243,25 @@ pub struct ModesSummary {
     peak_memory_bytes: u64,
 }
 
+/// Natural frequencies in a summary.
 #[derive(Debug, Serialize)]
-struct BodySummary {
+pub struct FrequenciesSummary {
     unknowns: usize,
     blocks: usize,
     frequency_hz: Vec<f64>,
     bound_hz: Vec<f64>,
+}
+
+impl FrequenciesSummary {
+    /// Those of a set.
+    pub fn new(set: &ModeSet) -> FrequenciesSummary {
+        FrequenciesSummary {
+            unknowns: set.n_unknowns,
+            blocks: set.steps,
+            frequency_hz: set.modes.iter().map(|m| m.frequency).collect(),
+            bound_hz: set.modes.iter().map(|m| m.bound).collect(),
+        }
+    }
 }
 
 impl ModesSummary {
@@ -258,12 +278,6 @@ impl ModesSummary {
         let mut laps = Laps::default();
         sets.iter().for_each(|(_, set)| laps.merge(&set.laps));
         laps.add(TOTAL, start.elapsed().as_secs_f64());
-        let body = |set: &ModeSet| BodySummary {
-            unknowns: set.n_unknowns,
-            blocks: set.steps,
-            frequency_hz: set.modes.iter().map(|m| m.frequency).collect(),
-            bound_hz: set.modes.iter().map(|m| m.bound).collect(),
-        };
         ModesSummary {
             schema: 1,
             scene: scene.path.display().to_string(),
@@ -275,7 +289,10 @@ impl ModesSummary {
             contact_mode: mode_name(model),
             effects: model.effects.iter().map(|e| e.name()).collect(),
             dofs: sides(|i| model.rings[i].as_ref().map_or(0, |r| r.mesh.n_dofs())),
-            modes: sets.iter().map(|(b, set)| (b.typed(), body(set))).collect(),
+            modes: sets
+                .iter()
+                .map(|(b, set)| (b.typed(), FrequenciesSummary::new(set)))
+                .collect(),
             shaft: equilibrium.map(ShaftSummary::new),
             balls: equilibrium.map(|e| e.balls.clone()),
             clearance: model.mounting.report.as_ref().map(ClearanceSummary::new),

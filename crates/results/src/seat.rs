@@ -73,11 +73,6 @@ pub fn tied(model: &Model, side: Side) -> Option<(&RingModel, &Arc<SeatTie>)> {
     Some((ring, ring.tie.as_ref()?))
 }
 
-/// Whether a ring is tied to a body.
-pub fn is_tied(model: &Model) -> bool {
-    Side::BOTH.into_iter().any(|side| model.tied(side).is_some())
-}
-
 /// Writes what the seats of rings in bodies carry, and sums it up; None where a ring is in none.
 pub fn of_run(model: &Model, solution: &StaticSolution, dir: &Path) -> Result<SeatSummaries, Failure> {
     let [inner, outer] = Side::BOTH.map(|side| finished(SeatState::new(model, solution, side)?, dir));

@@ -9,15 +9,15 @@ use std::path::{Path, PathBuf};
 
 use assembly::{Assembly, AssemblyMotion, AssemblySolution, AssemblyState};
 use checkpoint::GrowingFile;
-use comm::{Communicator, print};
+use comm::Communicator;
 use dynamics::balls::BallResult;
 use dynamics::stiffness::N_SHAFT;
 use scene::{Analysis, SeveralScene};
 use serde::Serialize;
 use timer::Laps;
 
-use crate::console::fixed;
 use crate::cut::Cut;
+use crate::modes::FrequenciesSummary;
 use crate::summary::{peak_memory, print_peak, print_seconds, print_warnings, write_summary};
 use crate::tables::{append, ball_cells, ball_columns, create, head, number, place_of};
 
@@ -179,7 +179,7 @@ fn in_one_turn(angle: f64) -> f64 {
 }
 
 /// Places of the shaft and their displacements: nodes of a beam; of a rigid shaft its bearings.
-fn line(assembly: &Assembly, displacements: &[f64]) -> Vec<(f64, [f64; N_SHAFT])> {
+pub(crate) fn line(assembly: &Assembly, displacements: &[f64]) -> Vec<(f64, [f64; N_SHAFT])> {
     let shaft = &assembly.shaft;
     let mut places = match shaft.is_beam() {
         true => shaft.nodes.clone(),
@@ -310,6 +310,9 @@ pub struct SeveralSummary {
     iterations: usize,
     /// Of the shaft over the largest force; of a motion the largest energy defect over the largest energy.
     residual: f64,
+    /// Natural frequencies, where they were asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    modes: Option<FrequenciesSummary>,
     warnings: Vec<String>,
     timing_s: BTreeMap<String, f64>,
     peak_memory_bytes: u64,
@@ -396,6 +399,7 @@ impl SeveralSummary {
             analysis: match scene.analysis {
                 Analysis::Sweep(_) => "sweep",
                 Analysis::Dynamic(_) => "dynamic",
+                Analysis::Modes(_) => "modes",
                 _ => "static",
             },
             status: findings.status,
@@ -410,9 +414,18 @@ impl SeveralSummary {
             effects: scene.effects.names(),
             iterations: findings.iterations,
             residual: findings.residual,
+            modes: None,
             warnings: findings.warnings,
             timing_s: parts.collect(),
             peak_memory_bytes: peak_memory(),
+        }
+    }
+
+    /// The same with natural frequencies.
+    pub fn with_modes(self, modes: FrequenciesSummary) -> SeveralSummary {
+        SeveralSummary {
+            modes: Some(modes),
+            ..self
         }
     }
 
@@ -427,72 +440,4 @@ impl SeveralSummary {
         print_seconds(self.timing_s.iter().map(|(part, s)| (part.as_str(), *s)));
         print_peak(self.peak_memory_bytes, None);
     }
-}
-
-/// Prints the bearings and the ends of the shaft.
-pub fn print_solution(assembly: &Assembly, last: &ListState) {
-    print::line(format_args!(
-        "bearing        position       x        y        z   tilt x   tilt y   force x   force y   force z  \
-         largest ball  loaded"
-    ));
-    print::line(format_args!(
-        "                     mm      um       um       um     urad     urad         N         N         N  \
-                    N   balls"
-    ));
-    for (mounted, state) in assembly.bearings.iter().zip(&last.bearings) {
-        let [x, y, z, a, b] = state.displacement.map(|q| 1e6 * q);
-        let [fx, fy, fz, ..] = state.force;
-        print::line(format_args!(
-            "{:<12} {} {:7.2} {:>7} {:>8} {:>8} {:>8} {:>8} {:>9} {:>9} {:>9} {:13.2} {:4} of {}",
-            mounted.name,
-            mounted.place.orientation.name(),
-            1e3 * mounted.place.position,
-            fixed::<3>(x),
-            fixed::<3>(y),
-            fixed::<3>(z),
-            fixed::<2>(a),
-            fixed::<2>(b),
-            fixed::<2>(fx),
-            fixed::<2>(fy),
-            fixed::<2>(fz),
-            state.largest_ball_force,
-            state.loaded_balls,
-            mounted.model.geometry.n_balls
-        ));
-    }
-    for (z, q) in ends(assembly, &last.shaft) {
-        print::line(format_args!(
-            "shaft at {:.2} mm: x {} um, y {} um, z {} um",
-            1e3 * z,
-            fixed::<3>(1e6 * q[0]),
-            fixed::<3>(1e6 * q[1]),
-            fixed::<3>(1e6 * q[2])
-        ));
-    }
-}
-
-/// The ends of a beam.
-fn ends(assembly: &Assembly, displacements: &[f64]) -> Vec<(f64, [f64; N_SHAFT])> {
-    let line = line(assembly, displacements);
-    match assembly.shaft.is_beam() {
-        true => vec![line[0], line[line.len() - 1]],
-        false => Vec::new(),
-    }
-}
-
-/// Prints a line per point of a sweep: the bearings' largest forces and loaded balls.
-pub fn print_sweep_head(column: &str, assembly: &Assembly) {
-    let names: Vec<String> = assembly
-        .bearings
-        .iter()
-        .map(|b| format!("{:>12} N (balls)", b.name))
-        .collect();
-    print::line(format_args!("{column:>28} {}", names.join(" ")));
-}
-
-/// Prints a point of a sweep.
-pub fn print_sweep_point(value: f64, point: &ListState) {
-    let cell = |state: &StateOnShaft| format!("{:14.2} ({:5})", state.largest_ball_force, state.loaded_balls);
-    let cells: Vec<String> = point.bearings.iter().map(cell).collect();
-    print::line(format_args!("{value:>28} {}", cells.join(" ")));
 }

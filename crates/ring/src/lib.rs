@@ -49,4 +49,4 @@ pub use step::{
     BodyAlone, ElasticStep, End, Ended, Feet, FrameTurn, Known, KnownLoad, PortAnswer, PortForces, Settling,
     StepFactor, Works,
 };
-pub use vibration::VibratingRing;
+pub use vibration::{RingToVibrate, VibratingRing, VibratingRings};

@@ -1,10 +1,13 @@
-//! One ring as a vibrating body: K and M in its coordinates, the factor of K + s M, and what its partner imposes.
+//! Rings that vibrate: K and M in their coordinates, the factor of K + s M, and what their partners impose.
 //!
 //! A clamped surface that moves with dofs of the partner has these as coordinates. A mean-motion hold leaves all
 //! nodes free; its held motions are constraints c^T w = 0, where c takes the area-weighted least-squares rigid motion
-//! of the surface. A mass of the partner acts on the motions that it follows. A ring that is tied to a body has the
-//! oscillators of this after its own coordinates (`tied::vibration`).
+//! of the surface. A mass of the partner acts on the motions that it follows. Rings that are tied to a body have the
+//! oscillators of this after their own coordinates (`tied::vibration`). Of a body on the shaft these know the motion of
+//! the shaft: the partner of its rings acts on them.
 
+use contact::NodalWeights;
+use rayon::prelude::*;
 use solver::LinearSolver;
 
 use crate::body::{Held, HeldRing, Partner};
@@ -14,33 +17,60 @@ use crate::harmonic::periodic::Periodic;
 use crate::matrices::{NodalMatrices, SparseMatrices};
 use crate::model::{Backend, Hold, RingModel};
 use crate::sparse::{SparseLoad, sparse_dot};
-use crate::tied::vibration::VibratingTie;
+use crate::tied::vibration::{VibratingJoint, VibratingTie};
+
+/// What is made ready to vibrate.
+#[derive(Clone, Copy)]
+pub struct RingToVibrate<'a> {
+    /// `inner` or `outer`.
+    pub name: &'static str,
+    /// The ring.
+    pub ring: &'a RingModel,
+    /// Its partner, whose dofs x, y, z, tilt x, tilt y carry masses, kg and kg m^2; without one it floats.
+    pub partner: Option<(Partner, [f64; 5])>,
+}
+
+impl RingToVibrate<'_> {
+    /// Whether it is tied to the body of another ring: they vibrate together.
+    pub fn shares_body(&self, other: &RingToVibrate<'_>) -> bool {
+        let body = |of: &RingToVibrate<'_>| {
+            let tie = of.ring.tie.as_ref().filter(|_| of.partner.is_some())?;
+            Some(std::sync::Arc::as_ptr(tie.body.as_ref()?))
+        };
+        body(self).is_some_and(|own| body(other) == Some(own))
+    }
+}
 
 /// A ring ready to vibrate.
 pub struct VibratingRing {
     held: HeldRing,
     matrices: Box<dyn NodalMatrices>,
     factor: Box<dyn LinearSolver>,
-    /// Held motions of a mean-motion hold, as generalised loads.
-    pub constraints: Vec<SparseLoad>,
+    /// Its first coordinate in its group.
+    first: usize,
+    /// Held motions as generalised loads, in coordinates of the group.
+    constraints: Vec<SparseLoad>,
     /// Masses of the partner: generalised load of the motion that one follows, and kg or kg m^2.
-    pub lumps: Vec<(SparseLoad, f64)>,
+    lumps: Vec<(SparseLoad, f64)>,
     /// Motions x, y, z, tilt x, tilt y of the partner, where the ring knows them.
     partner: [Option<SparseLoad>; 5],
-    /// The body to which it is tied.
+    /// Whether all of these follow from those of another ring on the same body.
+    follows: bool,
+}
+
+/// A ring alone, or rings that are tied to one body, with it.
+pub struct VibratingRings {
+    rings: Vec<VibratingRing>,
+    /// The body to which they are tied.
     tie: Option<VibratingTie>,
 }
 
 impl VibratingRing {
-    /// Assembles a ring and factors K + `shift` M. It is held as its model says by a partner whose translations carry
-    /// `mass` (kg), or it floats.
-    pub fn new(
-        name: &'static str,
-        ring: &RingModel,
-        partner: Option<(Partner, [f64; 5])>,
+    fn new(
+        RingToVibrate { name, ring, partner }: RingToVibrate<'_>,
         shift: f64,
         backend: Backend,
-    ) -> Result<VibratingRing, RingError> {
+    ) -> Result<(VibratingRing, Option<VibratingJoint>), RingError> {
         let hold = partner.map_or(Hold::Free, |_| ring.hold);
         let tied = ring.tie.as_ref().filter(|_| partner.is_some());
         let (of, masses) = partner.unwrap_or((Partner::AT_REST, [0.0; 5]));
@@ -64,45 +94,45 @@ impl VibratingRing {
                 }
             };
         let of_ring = (&*factor, held.coordinates.n());
-        let tie = tied.map(|tie| {
+        let joint = tied.map(|tie| -> Result<VibratingJoint, RingError> {
             let functions = ring.seat_functions(name)?;
             let functions = functions.expect("a ring that is tied has the functions of its seat");
-            VibratingTie::new(tie, &functions, of_ring, shift)
+            Ok(VibratingJoint::new(tie, &functions, of_ring))
         });
-        let tie = tie.transpose()?;
+        let joint = joint.transpose()?;
         // A tied ring meets no rigid partner.
-        let hold = if tie.is_some() { Hold::Free } else { hold };
-        // A mount has the moving dofs of a clamped surface, or all mean motions.
-        let moving = (0..5).filter(|&dof| of.moves[dof]);
-        let of_mount = |k: usize| held.mount.rows.get(k).cloned();
-        let motions: [Option<SparseLoad>; 5] = match hold {
-            Hold::MeanMotion => [0, 1, 2, 3, 4].map(of_mount),
-            Hold::Clamped | Hold::Free => {
-                let mut motions = [const { None }; 5];
-                moving.enumerate().for_each(|(k, dof)| motions[dof] = of_mount(k));
-                motions
-            }
+        let hold = if joint.is_some() { Hold::Free } else { hold };
+        let known = match hold {
+            Hold::MeanMotion | Hold::Clamped => motions_of_mount(hold, &held, of),
+            Hold::Free => [const { None }; 5],
         };
-        let constraints = match hold {
-            Hold::MeanMotion => (0..6)
-                .filter(|&dof| dof == 5 || !of.moves[dof])
-                .filter_map(of_mount)
-                .collect(),
-            Hold::Clamped | Hold::Free => Vec::new(),
+        let mut made = VibratingRing {
+            lumps: Vec::new(),
+            constraints: Vec::new(),
+            partner: [const { None }; 5],
+            follows: joint.as_ref().is_some_and(|joint| joint.tie().seat > 0),
+            first: 0,
+            held,
+            matrices,
+            factor,
         };
+        made.meet(known, of, masses);
+        if hold == Hold::MeanMotion {
+            let held = (0..6).filter(|&dof| dof == 5 || !of.moves[dof]);
+            let rows = held.filter_map(|dof| made.held.mount.rows.get(dof).cloned());
+            made.constraints = rows.collect();
+        }
+        Ok((made, joint))
+    }
+
+    /// Notes the motions of the partner and the masses that follow them.
+    fn meet(&mut self, motions: [Option<SparseLoad>; 5], of: Partner, masses: [f64; 5]) {
         let carries = |dof: &usize| masses[*dof] > 0.0 && of.moves[*dof];
         let lumps = (0..5)
             .filter(carries)
             .filter_map(|dof| Some((motions[dof].clone()?, masses[dof])));
-        Ok(VibratingRing {
-            lumps: lumps.collect(),
-            constraints,
-            partner: motions,
-            tie,
-            held,
-            matrices,
-            factor,
-        })
+        self.lumps = lumps.collect();
+        self.partner = motions;
     }
 
     /// How it is held.
@@ -110,74 +140,19 @@ impl VibratingRing {
         &self.held
     }
 
-    /// Number of coordinates, with those of a body to which it is tied.
-    pub fn n(&self) -> usize {
-        let of_body = self.tie.as_ref().map_or(0, VibratingTie::n_oscillators);
-        self.held.coordinates.n() + of_body
+    /// Number of its own coordinates, without those of a body.
+    fn n(&self) -> usize {
+        self.held.coordinates.n()
     }
 
-    /// K Y of a block of vectors, column-major, without what constraints and contacts add.
-    pub fn stiffness(&self, y: &[f64], n_vectors: usize) -> Vec<f64> {
-        let product = |y: &[f64]| {
-            self.matrices
-                .stiffness_products(&self.held.coordinates, y, n_vectors)
-        };
-        self.with_body(y, product, |square| square)
+    /// Held motions as generalised loads.
+    pub fn constraints(&self) -> &[SparseLoad] {
+        &self.constraints
     }
 
-    /// M Y of a block of vectors without the masses of the partner.
-    pub fn mass(&self, y: &[f64], n_vectors: usize) -> Vec<f64> {
-        let product = |y: &[f64]| -> Vec<f64> {
-            let columns = y.chunks_exact((y.len() / n_vectors.max(1)).max(1));
-            columns
-                .flat_map(|y| self.matrices.mass_product(&self.held.coordinates, y))
-                .collect()
-        };
-        self.with_body(y, product, |_| 1.0)
-    }
-
-    /// A product of the ring's own coordinates, and the oscillators of its body times a factor of their omega^2.
-    fn with_body(
-        &self,
-        y: &[f64],
-        product: impl Fn(&[f64]) -> Vec<f64>,
-        of_oscillator: impl Fn(f64) -> f64,
-    ) -> Vec<f64> {
-        match &self.tie {
-            None => product(y),
-            Some(tie) => tie.joined(&product(&tie.of_ring(y)), y, of_oscillator),
-        }
-    }
-
-    /// (K + s M)^-1 of a block of `n_vectors` loads, column-major `[n][n_vectors]`.
-    pub fn solve(&self, loads: &mut [f64], n_vectors: usize) {
-        match &self.tie {
-            None => self.factor.solve(loads, n_vectors),
-            Some(tie) => tie.solve(&*self.factor, loads),
-        }
-    }
-
-    /// Takes the forces that tie it to a body out of a vector of forces.
-    pub fn remove_reactions(&self, force: &mut [f64]) {
-        if let Some(tie) = &self.tie {
-            tie.remove_reactions(force);
-        }
-    }
-
-    /// Displacement of its nodes, `[n_nodes][3]` flat.
-    pub fn displacement(&self, y: &[f64]) -> Vec<f64> {
-        let n_ring = self.held.coordinates.n();
-        self.held.coordinates.expand(&y[..n_ring])
-    }
-
-    /// The same of the body to which it is tied; None where there is none, or a rigid one.
-    pub fn body_displacement(&self, y: &[f64]) -> Option<Vec<f64>> {
-        self.tie.as_ref()?.body_displacement(y)
-    }
-
-    /// What of y^T M y belongs to that body.
-    pub fn body_mass(&self, y: &[f64]) -> f64 {
-        self.tie.as_ref().map_or(0.0, |tie| tie.body_mass(y))
+    /// Masses of the partner: generalised load of the motion that one follows, and kg or kg m^2.
+    pub fn lumps(&self) -> &[(SparseLoad, f64)] {
+        &self.lumps
     }
 
     /// Generalised load of a motion (0 to 4: x, y, z, tilt x, tilt y) of the partner, where the ring knows it.
@@ -185,9 +160,190 @@ impl VibratingRing {
         self.partner[dof].as_ref()
     }
 
+    /// Whether the partner's motions are those that the body has given to another ring already.
+    pub fn follows_body(&self) -> bool {
+        self.follows
+    }
+
+    /// Generalised loads of a unit force in each direction of a contact.
+    pub fn contact_loads(&self, weights: &NodalWeights) -> [SparseLoad; 2] {
+        let own = self.held.coordinates.reduce_weights(weights);
+        own.map(|load| shifted(load, self.first))
+    }
+
     /// Motion x, y, z, tilt x, tilt y of the partner, m and rad.
     pub fn partner_motion(&self, y: &[f64]) -> [f64; 5] {
         let value = |motion: &Option<SparseLoad>| motion.as_ref().map_or(0.0, |m| sparse_dot(m, y));
         self.partner.each_ref().map(value)
+    }
+
+    /// Displacement of its nodes, `[n_nodes][3]` flat.
+    pub fn displacement(&self, y: &[f64]) -> Vec<f64> {
+        self.held.coordinates.expand(self.own(y))
+    }
+
+    /// Its own among the coordinates of its group.
+    fn own<'y>(&self, y: &'y [f64]) -> &'y [f64] {
+        &y[self.first..self.first + self.n()]
+    }
+
+    /// What of y^T M y is its own, without its body and the masses of its partner.
+    pub fn mass_of(&self, y: &[f64]) -> f64 {
+        let own = self.own(y);
+        let moved = self.matrices.mass_product(&self.held.coordinates, own);
+        own.iter().zip(moved).map(|(y, m)| y * m).sum()
+    }
+}
+
+/// Motions of the partner that a mount has. A clamped surface has those that move, a mean motion all.
+fn motions_of_mount(hold: Hold, held: &HeldRing, of: Partner) -> [Option<SparseLoad>; 5] {
+    let of_mount = |k: usize| held.mount.rows.get(k).cloned();
+    if hold == Hold::MeanMotion {
+        return [0, 1, 2, 3, 4].map(of_mount);
+    }
+    let mut motions = [const { None }; 5];
+    let moving = (0..5).filter(|&dof| of.moves[dof]);
+    moving.enumerate().for_each(|(k, dof)| motions[dof] = of_mount(k));
+    motions
+}
+
+fn shifted(mut load: SparseLoad, by: usize) -> SparseLoad {
+    load.iter_mut().for_each(|(i, _)| *i += by);
+    load
+}
+
+impl VibratingRings {
+    /// Assembles rings that are tied to one body, or one ring, and factors K + `shift` M of each.
+    pub fn new(
+        rings: &[RingToVibrate<'_>],
+        shift: f64,
+        backend: Backend,
+    ) -> Result<VibratingRings, RingError> {
+        let made: Result<Vec<_>, RingError> = rings
+            .par_iter()
+            .map(|&ring| VibratingRing::new(ring, shift, backend))
+            .collect();
+        let (mut made, joints): (Vec<VibratingRing>, Vec<Option<VibratingJoint>>) = made?.into_iter().unzip();
+        let mut first = 0;
+        for ring in &mut made {
+            ring.first = first;
+            let loads = ring
+                .constraints
+                .iter_mut()
+                .chain(ring.partner.iter_mut().flatten());
+            let loads = loads.chain(ring.lumps.iter_mut().map(|(load, _)| load));
+            loads.for_each(|load| *load = shifted(std::mem::take(load), first));
+            first += ring.n();
+        }
+        let joints: Vec<VibratingJoint> = joints.into_iter().flatten().collect();
+        let tie = (!joints.is_empty()).then(|| VibratingTie::new(joints, shift));
+        let tie = tie.transpose()?;
+        let all = VibratingRings { rings: made, tie };
+        Ok(all.on_shaft(rings))
+    }
+
+    /// The same where the oscillators of a body know the motion of the shaft that carries it.
+    fn on_shaft(mut self, rings: &[RingToVibrate<'_>]) -> VibratingRings {
+        let Some(tie) = &self.tie else { return self };
+        let first: usize = self.rings.iter().map(VibratingRing::n).sum();
+        for ((ring, joint), of) in self.rings.iter_mut().zip(tie.joints()).zip(rings) {
+            let (Some(shaft), Some((partner, masses))) = (&joint.modes().on_shaft, of.partner) else {
+                continue;
+            };
+            let motion = |dof: usize| {
+                let rows = shaft.rows.iter().enumerate();
+                Some(rows.map(|(i, row)| (first + i, row[dof])).collect())
+            };
+            let motions: [Option<SparseLoad>; 5] = [0, 1, 2, 3, 4].map(motion);
+            let held = (0..5).filter(|&dof| !partner.moves[dof] && !ring.follows);
+            ring.constraints = held.filter_map(|dof| motions[dof].clone()).collect();
+            ring.meet(motions, partner, masses);
+        }
+        self
+    }
+
+    /// The rings, in their order.
+    pub fn rings(&self) -> &[VibratingRing] {
+        &self.rings
+    }
+
+    /// Number of coordinates, with those of a body to which they are tied.
+    pub fn n(&self) -> usize {
+        let of_body = self.tie.as_ref().map_or(0, VibratingTie::n_oscillators);
+        self.rings.iter().map(VibratingRing::n).sum::<usize>() + of_body
+    }
+
+    /// K Y of a block of vectors, column-major, without what constraints and contacts add.
+    pub fn stiffness(&self, y: &[f64], n_vectors: usize) -> Vec<f64> {
+        let product = |ring: &VibratingRing, y: &[f64]| {
+            ring.matrices
+                .stiffness_products(&ring.held.coordinates, y, n_vectors)
+        };
+        self.products(y, n_vectors, product, |square| square)
+    }
+
+    /// M Y of a block of vectors without the masses of the partner.
+    pub fn mass(&self, y: &[f64], n_vectors: usize) -> Vec<f64> {
+        let product = |ring: &VibratingRing, y: &[f64]| -> Vec<f64> {
+            let columns = y.chunks_exact((y.len() / n_vectors.max(1)).max(1));
+            columns
+                .flat_map(|y| ring.matrices.mass_product(&ring.held.coordinates, y))
+                .collect()
+        };
+        self.products(y, n_vectors, product, |_| 1.0)
+    }
+
+    /// A product of each ring's own coordinates, and the oscillators of their body times a factor of their omega^2.
+    fn products(
+        &self,
+        y: &[f64],
+        n_vectors: usize,
+        product: impl Fn(&VibratingRing, &[f64]) -> Vec<f64> + Sync,
+        of_oscillator: impl Fn(f64) -> f64,
+    ) -> Vec<f64> {
+        let Some(tie) = &self.tie else {
+            return product(&self.rings[0], y);
+        };
+        let n = self.n();
+        let of_ring = |ring: &VibratingRing| {
+            let own: Vec<f64> = y.chunks_exact(n).flat_map(|y| ring.own(y)).copied().collect();
+            product(ring, &own)
+        };
+        let products: Vec<Vec<f64>> = self.rings.par_iter().map(of_ring).collect();
+        let mut rings = Vec::new();
+        for column in 0..n_vectors {
+            for (ring, product) in self.rings.iter().zip(&products) {
+                rings.extend_from_slice(&product[ring.n() * column..ring.n() * (column + 1)]);
+            }
+        }
+        tie.joined(&rings, y, of_oscillator)
+    }
+
+    /// (K + s M)^-1 of a block of `n_vectors` loads, column-major `[n][n_vectors]`.
+    pub fn solve(&self, loads: &mut [f64], n_vectors: usize) {
+        match &self.tie {
+            None => self.rings[0].factor.solve(loads, n_vectors),
+            Some(tie) => {
+                let factors: Vec<&dyn LinearSolver> = self.rings.iter().map(|ring| &*ring.factor).collect();
+                tie.solve(&factors, loads);
+            }
+        }
+    }
+
+    /// Takes the forces that tie them to a body out of a vector of forces.
+    pub fn remove_reactions(&self, force: &mut [f64]) {
+        if let Some(tie) = &self.tie {
+            tie.remove_reactions(force);
+        }
+    }
+
+    /// Displacement of the body to which they are tied; None where there is none, or a rigid one.
+    pub fn body_displacement(&self, y: &[f64]) -> Option<Vec<f64>> {
+        self.tie.as_ref()?.body_displacement(y)
+    }
+
+    /// What of y^T M y belongs to that body.
+    pub fn body_mass(&self, y: &[f64]) -> f64 {
+        self.tie.as_ref().map_or(0.0, |tie| tie.body_mass(y))
     }
 }

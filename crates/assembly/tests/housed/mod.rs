@@ -1,6 +1,7 @@
 //! Two bearings in one elastic sleeve, at rest and in motion: against two sleeves, the sleeve's own balance, the order
 //! of the list, ledgers.
 
+mod modes;
 mod shaft;
 mod stiffness;
 

@@ -3,7 +3,7 @@
 use super::*;
 
 /// A wall whose inside is carried by the shaft.
-const CARRIED: Wall = Wall {
+pub const CARRIED: Wall = Wall {
     thickness: -0.4,
     held: [0.0, 1.0],
 };
@@ -47,7 +47,7 @@ pub fn on_one(is_joined: bool, wall: Wall) -> [Arc<SeatTie>; 2] {
 }
 
 /// The same in the frame of the second, which comes first.
-fn on_one_turned(wall: Wall) -> [Arc<SeatTie>; 2] {
+pub fn on_one_turned(wall: Wall) -> [Arc<SeatTie>; 2] {
     let space = space(&inner());
     let mut mesh = hollow(&space, true, wall);
     let turned = |x: &mut [f64; 3]| *x = [x[0], -x[1], -x[2]];
@@ -57,7 +57,7 @@ fn on_one_turned(wall: Wall) -> [Arc<SeatTie>; 2] {
     [1, 0].map(|seat| tie(&body, &modes, seat))
 }
 
-fn on_two() -> [Arc<SeatTie>; 2] {
+pub fn on_two() -> [Arc<SeatTie>; 2] {
     let space = space(&inner());
     [("seat_front", false), ("seat_rear", true)].map(|(name, is_turned)| {
         let all = bands(&space, apart(&inner(), &space), false);

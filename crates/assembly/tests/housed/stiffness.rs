@@ -1,9 +1,11 @@
 //! Bearings in one body to first order, against differences of equilibria.
 
 use assembly::stiffness::LinearAssembly;
+use assembly::whirl::{equations, turning_shaft};
 use dynamics::DampingLaws;
+use ring::rigid::RigidInertia;
 
-use super::shaft::{HELD_BELOW, on_one};
+use super::shaft::{CARRIED, HELD_BELOW, on_one, on_two};
 use super::*;
 
 /// An equilibrium from another one.
@@ -21,7 +23,10 @@ fn linearised(
     side: Side,
     ties: [Arc<SeatTie>; 2],
 ) -> (Assembly, AssemblySolver, AssemblySolution, LinearAssembly) {
-    let mut list = tied_pair(side, ties, [0, 1]);
+    of_list(tied_pair(side, ties, [0, 1]))
+}
+
+fn of_list(mut list: Assembly) -> (Assembly, AssemblySolver, AssemblySolution, LinearAssembly) {
     let mut solver = AssemblySolver::new(&list).unwrap();
     let solution = solver.solve(&mut list, None).unwrap_or_else(|e| panic!("{e}"));
     let linear = LinearAssembly::new(&list, &solver, &solution, DampingLaws::default()).unwrap();
@@ -60,9 +65,93 @@ fn the_stiffness_on_one_elastic_shaft_is_that_of_differences() {
     differences_of_bearings(Side::Inner, on_one(true, HELD_BELOW));
 }
 
-/// Alone, bearings give another answer by `least` of the load or more.
+/// The pair in one sleeve and on one shaft, both elastic.
+fn in_and_on(housing: [Arc<SeatTie>; 2], shaft: [Arc<SeatTie>; 2]) -> Assembly {
+    let mut list = tied_pair(Side::Outer, housing, [0, 1]);
+    let on_shaft = tied_pair(Side::Inner, shaft, [0, 1]);
+    for (bearing, other) in list.bearings.iter_mut().zip(on_shaft.bearings) {
+        bearing.model.rings[0] = other.model.rings[0].clone();
+    }
+    list
+}
+
+/// Wrong: bearings that share a housing and a shaft would feel each other through one of them alone, or twice.
+#[test]
+fn the_stiffness_in_one_body_on_another_is_that_of_differences() {
+    let list = || in_and_on(in_one(true, 5e9), on_one(true, HELD_BELOW));
+    differences_of(list(), 0.1);
+    differences_of_places(list());
+}
+
+/// Wrong: the same where nothing joins the seats of either body.
+#[test]
+fn to_first_order_bodies_in_two_parts_are_four() {
+    let [found, expected] = [
+        in_and_on(in_one(false, 70e9), on_one(false, CARRIED)),
+        in_and_on(in_two(), on_two()),
+    ];
+    let [found, expected] = [found, expected].map(|list| of_list(list).3);
+    for (found, expected) in found.stiffness.iter().zip(&expected.stiffness) {
+        let error = off(found.as_flattened(), expected.as_flattened());
+        assert!(error < 1e-7, "{error:e}");
+    }
+    assert!(found.couplings.len() == 2 && expected.couplings.is_empty());
+}
+
+/// Frequencies over the speed, Hz, of a pair whose shaft has an inertia besides.
+fn over_speed(mut list: Assembly, heavy: &RigidInertia, speed: f64) -> (Vec<f64>, [[f64; 5]; 5]) {
+    list.shaft = ShaftBody::rigid(*heavy, [None; 5]);
+    let (list, _, _, linear) = of_list(list);
+    let turning = turning_shaft(&list).unwrap();
+    let modes = equations(&list, &turning, &linear, speed)
+        .unwrap()
+        .modes()
+        .unwrap();
+    let found = modes.iter().map(|mode| mode.frequency).filter(|f| *f > 0.0);
+    (found.collect(), linear.of_shaft(&list, 0.0).unwrap())
+}
+
+/// Wrong: modes over the speed would not have what bearings do to each other through their bodies, or have it twice. A
+/// heavy shaft swings on the matrix of the shaft; where nothing joins the seats, on bodies of their own.
+#[test]
+fn modes_over_the_speed_have_the_bodies_that_bearings_share() {
+    let heavy = RigidInertia {
+        mass: 3000.0,
+        first_moment: 0.0,
+        transverse: 8.0,
+        polar: 6.0,
+    };
+    let root = |i: usize| if i < 3 { heavy.mass } else { heavy.transverse }.sqrt();
+    for list in [
+        tied_pair(Side::Outer, in_one(true, 5e9), [0, 1]),
+        in_and_on(in_one(true, 5e9), on_one(true, HELD_BELOW)),
+    ] {
+        let (found, stiffness) = over_speed(list, &heavy, 0.0);
+        let scaled: Vec<f64> = (0..25)
+            .map(|k| stiffness[k / 5][k % 5] / (root(k / 5) * root(k % 5)))
+            .collect();
+        let expected = dense::symmetric_eigen(5, &scaled).unwrap().0;
+        let expected: Vec<f64> = expected
+            .iter()
+            .map(|w| w.sqrt() / std::f64::consts::TAU)
+            .collect();
+        println!("{:?} {expected:?}", &found[..5]);
+        // The balls, and the inertia of rings and shaft about another point, are what is left.
+        assert!(off(&found[..5], &expected) < 1e-3, "{found:?} {expected:?}");
+    }
+    let of = |list| over_speed(list, &INERTIA, 800.0).0;
+    let parts = of(in_and_on(in_one(false, 70e9), on_one(false, CARRIED)));
+    let bodies = of(in_and_on(in_two(), on_two()));
+    assert!(off(&parts, &bodies) < 1e-6, "{parts:?} {bodies:?}");
+}
+
 fn differences_of_shaft(side: Side, ties: [Arc<SeatTie>; 2], least: f64) {
-    let (mut list, mut solver, solution, linear) = linearised(side, ties);
+    differences_of(tied_pair(side, ties, [0, 1]), least);
+}
+
+/// Alone, bearings give another answer by `least` of the load or more.
+fn differences_of(list: Assembly, least: f64) {
+    let (mut list, mut solver, solution, linear) = of_list(list);
     let stiffness = linear.of_shaft(&list, 0.0).unwrap();
     let mut alone = linear;
     alone.couplings.clear();
@@ -102,8 +191,12 @@ fn what_bearings_in_one_body_do_to_each_other_is_that_of_differences() {
 }
 
 fn differences_of_bearings(side: Side, ties: [Arc<SeatTie>; 2]) {
+    differences_of_places(tied_pair(side, ties, [0, 1]));
+}
+
+fn differences_of_places(list: Assembly) {
     const STEP: f64 = 1e-7;
-    let (mut list, mut solver, solution, linear) = linearised(side, ties);
+    let (mut list, mut solver, solution, linear) = of_list(list);
     list.shaft.held = solution.shaft.displacements.iter().map(|q| Some(*q)).collect();
     for moved in [0, 1] {
         let shift = list.bearings[moved].place.shift;

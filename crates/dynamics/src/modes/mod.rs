@@ -18,31 +18,41 @@
 //! - **Held** ring: its bore or seat is clamped or held in its mean motion, as the scene has it, by a partner at rest,
 //!   or it vibrates with the elastic body to which it is tied.
 //! - **Bearing**: the outer ring is held by the housing, at rest or such a body; the inner ring by the shaft, whose
-//!   free dofs move and carry its mass and moment of inertia. The rotation of the shaft about z is held. A rigid inner
-//!   ring has the mass of the shaft and no other; dofs of the shaft without mass follow quasi-statically.
+//!   free dofs move and carry its mass and moment of inertia, or by an elastic body that moves with the shaft. The
+//!   rotation of the shaft about z is held. A rigid inner ring has the mass of the shaft and no other; dofs of the
+//!   shaft without mass follow quasi-statically.
+//! - **Several bearings** on one shaft ([`modes_of_several`]): rings that are tied to one body vibrate with it and with
+//!   each other; the shaft has a mass and a stiffness matrix, and inner rings stay where it has them by constraints.
 //!
 //! Pairs come from block Lanczos about the negative shift lambda = -s ([`dense::eigen`]): K + s M is positive
 //! definite even for a free ring, so the rings' own sparse Cholesky factors serve, and contacts and constraints are a
 //! small dense system on top of them. Each ring is factored once, whatever the number of modes.
 
 mod columns;
+mod links;
+mod several;
 mod shape;
+mod small;
 mod system;
 
 use contact::Side;
-use dense::{LanczosSettings, Searched, lowest_pairs};
-use timer::{Laps, SharedLaps, Stopwatch};
+use dense::{EigenProblem, LanczosSettings, Searched, lowest_pairs};
+use rayon::prelude::*;
+use ring::sparse::SparseLoad;
+use ring::{Backend, Partner, RingModel, RingToVibrate, VibratingRings};
+use timer::{Laps, Stopwatch};
 
-use crate::bearing::{FIRST_BALL, SHAFT, lengths};
+use crate::bearing::SHAFT;
 use crate::costs::{FACTOR, SEARCH};
 use crate::error::DynamicsError;
 use crate::model::{ContactMode, Model, ShaftDof};
 use crate::solution::StaticSolution;
-use crate::system::{Body, FiniteMotion, Link, LinkTerm, N_FINITE};
-use columns::{LengthGrowth, LinkTangent};
-use ring::{Backend, Partner, RingModel, VibratingRing};
-use system::{BearingDofs, VibratingBearing};
+use links::{RingCarrier, VibratingLinks, link_tangents};
+use shape::{BearingDofs, FoundPair, RingPlace};
+use small::SmallDofs;
+use system::VibratingSystem;
 
+pub use several::{BearingOnFreeShaft, FreeShaft, ModeOfSeveral, ModesOfSeveral, modes_of_several};
 pub use shape::{Mode, Shape};
 
 /// omega^2 over the shift below which a mode is a rigid motion: far above round-off (1e-9 on 60 000 dofs), and a
@@ -103,11 +113,13 @@ pub fn ring_modes(
         RingSupport::Free => None,
         RingSupport::AsHeld => Some((Partner::AT_REST, [0.0; 5])),
     };
-    let body = VibratingRing::new(side.name(), ring, partner, shift, settings.backend)?;
-    let mut rings = [None, None];
-    rings[side.index()] = Some(body);
-    let system = VibratingBearing::new(rings, Vec::new(), Vec::new(), shift)?;
+    let name = side.name();
+    let body = VibratingRings::new(&[RingToVibrate { name, ring, partner }], shift, settings.backend)?;
+    let system = VibratingSystem::new(vec![body], SmallDofs::default(), Vec::new(), Vec::new(), shift)?;
+    let mut dofs = BearingDofs::default();
+    dofs.rings[side.index()] = Some(RingPlace { group: 0, ring: 0 });
     search(&system, settings, RING_BLOCK, clock, progress)
+        .map(|found| found.with(|pair| Mode::new(&system, &dofs, pair)))
 }
 
 /// Modes of the loaded bearing about an equilibrium of the model.
@@ -119,58 +131,138 @@ pub fn bearing_modes(
 ) -> Result<ModeSet, DynamicsError> {
     let clock = Stopwatch::start();
     check_supported(model, equilibrium)?;
-    let steel = &model.ball_material;
-    let speed = (steel.young_modulus / steel.density).sqrt();
-    let shift = shift(settings, speed / model.geometry.centre_radius(Side::Inner));
+    let shift = shift(settings, wave_rate(model));
     let free: Vec<usize> = (0..5).filter(|&i| model.shaft[i] == ShaftDof::Free).collect();
     let shaft = Partner {
         moves: model.shaft.map(|dof| dof == ShaftDof::Free),
     };
+    let wanted = wanted(model, (shaft, model.shaft_masses()));
+    let (groups, places) = grouped(&wanted, shift, settings.backend)?;
+    let mut small = SmallDofs::default();
+    let (dofs, carriers) = add_bearing(model, equilibrium, &mut small, [places[0], places[1]], |small| {
+        let mut motion = [const { Vec::new() }; 5];
+        for &dof in free.iter().filter(|_| places[0].is_none()) {
+            motion[dof] = vec![(small.add(model.shaft_masses()[dof]), 1.0)];
+        }
+        motion
+    });
+    let link_tangents = link_tangents(&VibratingLinks {
+        equilibrium,
+        parts: &equilibrium.parts,
+        rings: dofs.in_groups(&groups),
+        first_ball: dofs.first_ball,
+        carriers: &carriers,
+    });
+    let block = block(model.geometry.n_balls);
+    let system = VibratingSystem::new(groups, small, link_tangents, Vec::new(), shift)?;
+    search(&system, settings, block, clock, progress)
+        .map(|found| found.with(|pair| Mode::new(&system, &dofs, pair)))
+}
+
+/// Rate of the slowest wave over the size of a bearing, 1/s.
+fn wave_rate(model: &Model) -> f64 {
+    let steel = &model.ball_material;
+    let speed = (steel.young_modulus / steel.density).sqrt();
+    speed / model.geometry.centre_radius(Side::BOTH[0])
+}
+
+/// The elastic rings of a bearing with what holds them, inner first, whose shaft carries masses.
+fn wanted(model: &Model, shaft: (Partner, [f64; 5])) -> [Option<RingToVibrate<'_>>; 2] {
     let housing = Partner {
         moves: [false, false, model.seat().is_some(), false, false],
     };
     let seat_mass = model.seat().map_or(0.0, |seat| seat.mass);
-    let build = |side: Side| {
-        let partner = match side {
-            Side::Inner => (shaft, model.shaft_masses()),
-            Side::Outer => (housing, [0.0, 0.0, seat_mass, 0.0, 0.0]),
-        };
-        let ring = model.ring(side);
-        ring.map(|ring| VibratingRing::new(side.name(), ring, Some(partner), shift, settings.backend))
-            .transpose()
-    };
-    let (inner, outer) = rayon::join(|| build(Side::Inner), || build(Side::Outer));
-    let rings = [inner?, outer?];
-    let mut small_mass = vec![model.ball_mass(); 2 * model.geometry.n_balls];
+    let partners = [shaft, (housing, [0.0, 0.0, seat_mass, 0.0, 0.0])];
+    Side::BOTH.map(|side| {
+        Some(RingToVibrate {
+            name: side.name(),
+            ring: model.ring(side)?,
+            partner: Some(partners[side.index()]),
+        })
+    })
+}
+
+/// Makes elastic rings ready, those that are tied to one body together, and says where each is.
+fn grouped(
+    wanted: &[Option<RingToVibrate<'_>>],
+    shift: f64,
+    backend: Backend,
+) -> Result<(Vec<VibratingRings>, Vec<Option<RingPlace>>), DynamicsError> {
+    let mut groups: Vec<Vec<RingToVibrate<'_>>> = Vec::new();
     let mut places = Vec::new();
-    if rings[0].is_none() {
-        for &dof in &free {
-            places.push((SHAFT, dof, small_mass.len()));
-            small_mass.push(model.shaft_masses()[dof]);
+    for wanted in wanted {
+        places.push(wanted.map(|ring| {
+            let known = groups.iter().position(|group| group[0].shares_body(&ring));
+            let group = known.unwrap_or(groups.len());
+            if known.is_none() {
+                groups.push(Vec::new());
+            }
+            groups[group].push(ring);
+            let ring = groups[group].len() - 1;
+            RingPlace { group, ring }
+        }));
+    }
+    let made: Result<Vec<VibratingRings>, ring::RingError> = groups
+        .par_iter()
+        .map(|rings| VibratingRings::new(rings, shift, backend))
+        .collect();
+    Ok((made?, places))
+}
+
+/// Adds the balls of a bearing to the small dofs, what carries its rigid rings and its seat. `shaft` adds the dofs of a
+/// shaft, if there are any, and gives its motion by small dofs.
+fn add_bearing(
+    model: &Model,
+    equilibrium: &StaticSolution,
+    small: &mut SmallDofs,
+    rings: [Option<RingPlace>; 2],
+    shaft: impl FnOnce(&mut SmallDofs) -> [SparseLoad; 5],
+) -> (BearingDofs, Vec<RingCarrier>) {
+    let first_ball = small.n();
+    for _ in 0..2 * model.geometry.n_balls {
+        small.add(model.ball_mass());
+    }
+    let shaft = shaft(small);
+    let mut carriers = Vec::new();
+    for (coordinate, motion) in shaft.iter().enumerate() {
+        if rings[0].is_none() && !motion.is_empty() {
+            carriers.push(RingCarrier {
+                body: SHAFT,
+                coordinate,
+                motion: motion.clone(),
+            });
         }
     }
-    let shaft = places.iter().map(|&(_, dof, place)| (dof, place)).collect();
-    if let (None, Some(body)) = (&rings[1], equilibrium.parts.carrier(Side::Outer)) {
-        places.push((body, 2, small_mass.len()));
-        small_mass.push(seat_mass);
-    }
-    let seat = places.iter().find(|place| place.0 != SHAFT).map(|place| place.2);
-    let link_tangents = link_tangents(equilibrium, &rings, &places);
-    let block = model.geometry.n_balls.clamp(RING_BLOCK, LARGEST_BLOCK);
-    let mut system = VibratingBearing::new(rings, small_mass, link_tangents, shift)?;
-    system.set_bearing(BearingDofs {
+    let [_, outer] = Side::BOTH;
+    let sliding = equilibrium.parts.carrier(outer).filter(|_| rings[1].is_none());
+    let seat = sliding.map(|body| {
+        let place = small.add(model.seat().map_or(0.0, |seat| seat.mass));
+        carriers.push(RingCarrier {
+            body,
+            coordinate: 2,
+            motion: vec![(place, 1.0)],
+        });
+        place
+    });
+    let dofs = BearingDofs {
+        rings,
+        first_ball,
         n_balls: model.geometry.n_balls,
         shaft,
         seat,
-        tilt_arm: model.geometry.centre_radius(Side::Inner),
-    });
-    search(&system, settings, block, clock, progress)
+        tilt_arm: model.geometry.centre_radius(Side::BOTH[0]),
+    };
+    (dofs, carriers)
 }
 
 /// Largest number of basis vectors that a search keeps, for forecasts of memory: ring alone, bearing.
 pub fn basis_sizes(number: usize, n_balls: usize) -> [usize; 2] {
-    [RING_BLOCK, n_balls.clamp(RING_BLOCK, LARGEST_BLOCK)]
-        .map(|block| LanczosSettings::new(number, block).capacity())
+    [RING_BLOCK, block(n_balls)].map(|block| LanczosSettings::new(number, block).capacity())
+}
+
+/// Vectors per block of bearings with so many balls.
+fn block(n_balls: usize) -> usize {
+    n_balls.clamp(RING_BLOCK, LARGEST_BLOCK)
 }
 
 fn check_supported(model: &Model, equilibrium: &StaticSolution) -> Result<(), DynamicsError> {
@@ -198,169 +290,56 @@ fn shift(settings: ModesSettings, wave_rate: f64) -> f64 {
     }
 }
 
-/// Tangents of all interactions of the equilibrium and what they connect.
-fn link_tangents(
-    equilibrium: &StaticSolution,
-    rings: &[Option<VibratingRing>; 2],
-    places: &[(usize, usize, usize)],
-) -> Vec<LinkTangent> {
-    let parts = &equilibrium.parts;
-    let x = parts.unknowns(&equilibrium.displacements);
-    let system = parts.system();
-    let vibrating = Vibrating {
-        equilibrium,
-        rings,
-        places,
-    };
-    let mut link_tangents = Vec::new();
-    for (number, family) in parts.interactions().into_iter().enumerate() {
-        let found = system.lengths_at(number, &x);
-        let at = family.evaluate(lengths(&found), &SharedLaps::default());
-        let finite = system.finite_motions(number, &x);
-        let n = family.n_rows();
-        let tangents = at.tangents.chunks_exact(n * n);
-        for ((link, tangent), finite) in family.links().iter().zip(tangents).zip(&finite) {
-            link_tangents.push(LinkTangent {
-                tangent: tangent.to_vec(),
-                lengths: (0..n).map(|row| vibrating.growth(link, row, finite)).collect(),
-            });
-        }
-        if system.has_curvature() {
-            link_tangents.extend(vibrating.curvature(family.links(), &finite, &at.forces));
-        }
-    }
-    link_tangents
+/// Eigenpairs of a system that were searched.
+struct SearchedPairs {
+    pairs: dense::Eigenpairs,
+    n_unknowns: usize,
+    shift: f64,
+    laps: Laps,
 }
 
-/// What moves the coordinates of a bearing that vibrates.
-struct Vibrating<'v> {
-    equilibrium: &'v StaticSolution,
-    rings: &'v [Option<VibratingRing>; 2],
-    /// Body, its coordinate and its place among the small dofs, of what carries rigid rings.
-    places: &'v [(usize, usize, usize)],
-}
-
-impl Vibrating<'_> {
-    /// What moves one length of a link. What carries a ring has its dofs by body among the small ones, or in the motion
-    /// of a flexible ring, which has that of its partner in it.
-    fn growth(&self, link: &Link, row: usize, finite: &Option<FiniteMotion>) -> LengthGrowth {
-        let is_elastic = |term: &LinkTerm| matches!(term.body, Body::Elastic(_));
-        let is_ring = link.terms.iter().any(is_elastic);
-        let mut growth = LengthGrowth::default();
-        for term in link.terms.iter().filter(|term| term.rows[row] != 0.0) {
-            let follows = is_ring && matches!(term.body, Body::Lumped(body) if self.carried(body).is_some());
-            if !follows {
-                self.add(&mut growth, (term.body, term.coordinate), term.rows[row]);
-            }
-        }
-        if let (Some(carried), Some(finite)) = (link.finite, finite) {
-            for (coordinate, row_of) in carried.coordinates().into_iter().zip(finite.rows()) {
-                row_of
-                    .get(row)
-                    .into_iter()
-                    .for_each(|value| self.add(&mut growth, coordinate, *value));
-            }
-        }
-        growth
-    }
-
-    /// What finite motions and the loads that follow them add to the stiffness of the tilts under the forces of the
-    /// links.
-    fn curvature(
-        &self,
-        links: &[Link],
-        finite: &[Option<FiniteMotion>],
-        forces: &[f64],
-    ) -> Option<LinkTangent> {
-        let carrier = links.iter().find_map(|link| link.finite)?;
-        let mut tangent = [[0.0; N_FINITE]; N_FINITE];
-        let mut add = |sign: f64, values: [[f64; N_FINITE]; N_FINITE]| {
-            let sums = tangent.as_flattened_mut().iter_mut();
-            sums.zip(values.as_flattened())
-                .for_each(|(sum, value)| *sum += sign * value);
+impl SearchedPairs {
+    /// What `make` makes of each of the pairs.
+    fn made<T>(&self, make: impl Fn(FoundPair<'_>) -> T) -> Vec<T> {
+        let vectors = self.pairs.vectors.chunks_exact(self.n_unknowns).enumerate();
+        let pair = |(i, x)| {
+            make(FoundPair {
+                x,
+                value: self.pairs.values[i],
+                bound: self.pairs.bounds[i],
+                residual: self.pairs.residuals[i],
+                is_rigid: self.pairs.values[i] <= RIGID * self.shift,
+            })
         };
-        let forces = forces.chunks_exact(forces.len() / links.len());
-        for (finite, force) in finite.iter().zip(forces) {
-            if let Some(finite) = finite {
-                add(1.0, finite.circle.curvature(finite.at, [force[0], force[1]]));
-            }
-        }
-        let [.., tilt_x, tilt_y] = self.equilibrium.displacements.shaft;
-        if let Some(loads) = self.equilibrium.parts.shaft.tilted {
-            add(-1.0, loads.slopes([tilt_x, tilt_y]));
-        }
-        let growth = |coordinate: (Body, usize)| {
-            let mut growth = LengthGrowth::default();
-            self.add(&mut growth, coordinate, 1.0);
-            growth
-        };
-        Some(LinkTangent {
-            tangent: tangent.as_flattened().to_vec(),
-            lengths: carrier.coordinates().map(growth).to_vec(),
-        })
+        vectors.map(pair).collect()
     }
 
-    /// Side of the ring that a lumped body carries.
-    fn carried(&self, body: usize) -> Option<Side> {
-        let carrier = |side: &Side| self.equilibrium.parts.carrier(*side) == Some(body);
-        Side::BOTH.into_iter().find(carrier)
-    }
-
-    /// Adds `value` times the motion of a coordinate.
-    fn add(&self, growth: &mut LengthGrowth, (body, coordinate): (Body, usize), value: f64) {
-        match body {
-            Body::Lumped(number) => {
-                let Some(side) = self.carried(number) else {
-                    let place = 2 * (number - FIRST_BALL) + coordinate;
-                    return growth.small.push((place, value));
-                };
-                let mut places = self.places.iter();
-                if let Some((_, _, place)) = places.find(|(of, dof, _)| (*of, *dof) == (number, coordinate)) {
-                    growth.small.push((*place, value));
-                }
-                let ring = self.rings[side.index()].as_ref();
-                if let Some(load) = ring.and_then(|ring| ring.partner_load(coordinate)) {
-                    growth.add_ring(side.index(), load, value);
-                }
-            }
-            Body::Elastic(number) => {
-                let of = |side: &Side| self.equilibrium.parts.elastic(*side) == Some(number);
-                let found = Side::BOTH.into_iter().find(of);
-                let Some((side, ring)) = found.and_then(|s| Some((s, self.rings[s.index()].as_ref()?)))
-                else {
-                    return;
-                };
-                let foot = &self.equilibrium.footprints(side)[coordinate / 2];
-                let weights = ring.held().coordinates.reduce_weights(&foot.weights);
-                growth.add_ring(side.index(), &weights[coordinate % 2], value);
-            }
+    fn with(self, make: impl Fn(FoundPair<'_>) -> Mode) -> ModeSet {
+        ModeSet {
+            modes: self.made(make),
+            n_unknowns: self.n_unknowns,
+            steps: self.pairs.steps,
+            laps: self.laps,
         }
     }
 }
 
 fn search(
-    system: &VibratingBearing,
+    system: &VibratingSystem,
     settings: ModesSettings,
     block: usize,
     mut clock: Stopwatch,
     progress: &mut dyn FnMut(Searched),
-) -> Result<ModeSet, DynamicsError> {
+) -> Result<SearchedPairs, DynamicsError> {
     let mut laps = Laps::default();
     laps.add(FACTOR, clock.lap());
     let lanczos = LanczosSettings::new(settings.number, block);
     let pairs = lowest_pairs(system, lanczos, progress).map_err(|source| DynamicsError::Modes { source })?;
-    let n = dense::EigenProblem::n(system);
-    let modes = pairs.vectors.chunks_exact(n).enumerate().map(|(i, x)| {
-        let [value, bound] = [pairs.values[i], pairs.bounds[i]];
-        let is_rigid = value <= RIGID * dense::EigenProblem::shift(system);
-        Mode::new(system, x, [value, bound], pairs.residuals[i], is_rigid)
-    });
-    let modes = modes.collect();
     laps.add(SEARCH, clock.lap());
-    Ok(ModeSet {
-        modes,
-        n_unknowns: n,
-        steps: pairs.steps,
+    Ok(SearchedPairs {
+        pairs,
+        n_unknowns: system.n(),
+        shift: system.shift(),
         laps,
     })
 }

@@ -1,92 +1,82 @@
 //! Rings, balls and shaft as one eigenproblem.
 //!
-//! Unknowns y: coordinates of the inner ring, of the outer ring, then the small dofs p (balls, shaft of a rigid
-//! ring). Interactions, constraints and the masses of mean motions act on a ring through few columns a_j, so K + s M is
-//! solved by the rings' factors and one dense system. With forces t of the columns and z = S^-1 b of the rings, r = z
-//! - X t with X = S^-1 [a_j], C = [a_i]^T X and l = a^T r + b^T p (a = -W, the patch weights, for a contact):
+//! Unknowns y: coordinates of the rings, then the small dofs p (balls, shaft of a rigid ring or of several bearings),
+//! with matrices m and k of their own. Rings that are tied to one body are a group with it. Interactions, constraints
+//! and the masses of mean motions act on a ring through few columns a_j, so K + s M is solved by the rings' factors and
+//! one dense system. With forces t of the columns and z = S^-1 b of the rings, r = z - X t with X = S^-1 [a_j],
+//! C = [a_i]^T X and l = a^T r + b^T p (a = -W, the patch weights, for a contact):
 //!
 //! ```text
 //! link        t - D l = 0            D its tangent, of a contact 2 x 2 and zero without load
 //! mass m_s    t - s m_s a^T r = 0
 //! constraint  a^T r = 0
-//! small dofs  s m p + sum of b t = f
+//! small dofs  (k + s m) p + sum of b t = f
 //! ```
 //!
 //! No tangent or mass is inverted, so unloaded contacts and dofs without mass are nothing special. X costs one block
 //! solve per ring; after that the operator costs one solve per ring and vector.
 
 use dense::{DenseLu, EigenProblem};
+use rayon::prelude::*;
 
-use super::columns::{Column, LinkTangent, Role, columns, reactions};
+use super::columns::{Column, LengthGrowth, LinkTangent, Role, columns};
+use super::small::SmallDofs;
 use crate::error::DynamicsError;
-use ring::VibratingRing;
+use ring::VibratingRings;
 use ring::sparse::sparse_dot;
 use ring::vectors::dot;
 
-/// The bearing's own dofs among the small ones.
-#[derive(Default)]
-pub(super) struct BearingDofs {
-    /// Number of balls: the first small dofs, [radial, axial] each.
-    pub n_balls: usize,
-    /// Shaft dof and place among the small dofs, of a rigid inner ring.
-    pub shaft: Vec<(usize, usize)>,
-    /// Place of the seat of a rigid outer ring that slides.
-    pub seat: Option<usize>,
-    /// Radius at which tilts count as displacements, m.
-    pub tilt_arm: f64,
-}
-
 /// The eigenproblem of rings, balls and shaft.
-pub struct VibratingBearing {
-    pub(super) rings: [Option<VibratingRing>; 2],
-    /// Masses of the small dofs, kg.
-    small_mass: Vec<f64>,
+pub struct VibratingSystem {
+    pub(super) groups: Vec<VibratingRings>,
+    pub(super) small: SmallDofs,
     link_tangents: Vec<LinkTangent>,
     columns: Vec<Column>,
-    /// S^-1 of the columns of each ring, column-major, and their numbers.
-    answers: [Answer; 2],
+    /// S^-1 of the columns of each group, column-major, and their numbers.
+    answers: Vec<Answer>,
     /// Unit of the forces t, N per m.
     force_unit: f64,
     dense: Option<DenseLu>,
-    /// Orthonormal directions of the constraint forces of each ring.
-    reactions: [Vec<Vec<f64>>; 2],
+    /// Orthonormal directions of the constraint forces.
+    reactions: Vec<Vec<f64>>,
     shift: f64,
-    pub(super) dofs: BearingDofs,
 }
 
-/// X of one ring.
-#[derive(Default)]
+/// X of one group.
 struct Answer {
     numbers: Vec<usize>,
     columns: Vec<f64>,
 }
 
-impl VibratingBearing {
-    /// A system of rings, small dofs of given masses and what couples them.
+impl VibratingSystem {
+    /// A system of groups of rings, small dofs, what couples them, and `joints` that stay closed.
     pub fn new(
-        rings: [Option<VibratingRing>; 2],
-        small_mass: Vec<f64>,
+        groups: Vec<VibratingRings>,
+        small: SmallDofs,
         link_tangents: Vec<LinkTangent>,
+        joints: Vec<LengthGrowth>,
         shift: f64,
-    ) -> Result<VibratingBearing, DynamicsError> {
-        let columns = columns(&rings, &link_tangents);
+    ) -> Result<VibratingSystem, DynamicsError> {
+        let columns = columns(&groups, &link_tangents, joints);
         let entries = link_tangents.iter().flat_map(|c| &c.tangent);
         let largest = entries.fold(0.0f64, |m, x| m.max(x.abs()));
-        let mut system = VibratingBearing {
-            reactions: [0, 1].map(|i| reactions(&rings, &columns, i)),
-            rings,
-            small_mass,
+        let mut system = VibratingSystem {
+            groups,
+            small,
             link_tangents,
             columns,
-            answers: Default::default(),
+            answers: Vec::new(),
             force_unit: if largest > 0.0 { largest } else { 1.0 },
             dense: None,
+            reactions: Vec::new(),
             shift,
-            dofs: BearingDofs::default(),
         };
-        let (inner, outer) = rayon::join(|| system.answer(0), || system.answer(1));
-        system.answers = [inner, outer];
-        let n = system.columns.len() + system.small_mass.len();
+        system.reactions = system.directions();
+        system.answers = (0..system.groups.len())
+            .into_par_iter()
+            .map(|i| system.answer(i))
+            .collect();
+        let n = system.columns.len() + system.small.n();
         if n > 0 {
             let dense = DenseLu::factor(n, &system.matrix());
             system.dense = Some(dense.map_err(|source| DynamicsError::Modes { source })?);
@@ -94,53 +84,64 @@ impl VibratingBearing {
         Ok(system)
     }
 
-    /// Says which small dofs are balls and shaft.
-    pub(super) fn set_bearing(&mut self, dofs: BearingDofs) {
-        self.dofs = dofs;
+    /// First unknown of a group, or for the number of groups of the small dofs.
+    fn start(&self, i: usize) -> usize {
+        self.groups[..i].iter().map(VibratingRings::n).sum()
     }
 
-    /// First unknowns of the rings, of the small dofs, and their number.
-    pub(super) fn starts(&self) -> [usize; 4] {
-        let [inner, outer] = [0, 1].map(|i| self.rings[i].as_ref().map_or(0, VibratingRing::n));
-        [0, inner, inner + outer, inner + outer + self.small_mass.len()]
-    }
-
-    /// Part of a ring or, for 2, of the small dofs.
+    /// Part of a group or, for the number of groups, of the small dofs.
     pub(super) fn part<'y>(&self, y: &'y [f64], i: usize) -> &'y [f64] {
-        let starts = self.starts();
-        &y[starts[i]..starts[i + 1]]
+        let n = self.groups.get(i).map_or(self.small.n(), VibratingRings::n);
+        &y[self.start(i)..][..n]
     }
 
-    /// Kinetic energy, over omega^2/2: inner ring, outer ring, balls, shaft.
-    pub(super) fn kinetic(&self, y: &[f64]) -> [f64; 4] {
-        let mut parts = [0.0; 4];
-        for (i, ring) in self.rings.iter().enumerate() {
-            if let Some(ring) = ring {
-                let y = self.part(y, i);
-                parts[i] = dot(y, &ring.mass(y, 1));
-                for (load, mass) in &ring.lumps {
-                    // The shaft carries the inner ring; what slides with the outer one counts as that ring.
-                    parts[if i == 0 { 3 } else { 1 }] += mass * sparse_dot(load, y).powi(2);
+    /// The small dofs.
+    pub(super) fn small_part<'y>(&self, y: &'y [f64]) -> &'y [f64] {
+        self.part(y, self.groups.len())
+    }
+
+    /// Orthonormal directions of the constraint forces, beside those that tie rings to bodies, by Gram-Schmidt.
+    fn directions(&self) -> Vec<Vec<f64>> {
+        let mut directions: Vec<Vec<f64>> = Vec::new();
+        for column in &self.columns {
+            let Role::Constraint = column.role else { continue };
+            let mut direction = vec![0.0; self.n()];
+            self.add_force(column, 1.0, &mut direction);
+            for _ in 0..2 {
+                self.remove_ties(&mut direction);
+                for other in &directions {
+                    let size = dot(&direction, other);
+                    direction.iter_mut().zip(other).for_each(|(d, o)| *d -= size * o);
                 }
             }
+            let length = dot(&direction, &direction).sqrt();
+            direction.iter_mut().for_each(|d| *d /= length);
+            directions.push(direction);
         }
-        let small = self.part(y, 2).iter().zip(&self.small_mass);
-        for (k, (x, mass)) in small.enumerate() {
-            let owner = match k {
-                _ if k < 2 * self.dofs.n_balls => 2,
-                _ if Some(k) == self.dofs.seat => 1,
-                _ => 3,
-            };
-            parts[owner] += mass * x * x;
-        }
-        parts
+        directions
     }
 
-    /// S^-1 of the columns of one ring.
+    /// Takes the forces that tie rings to bodies out of a vector of forces.
+    fn remove_ties(&self, force: &mut [f64]) {
+        let mut start = 0;
+        for group in &self.groups {
+            group.remove_reactions(&mut force[start..start + group.n()]);
+            start += group.n();
+        }
+    }
+
+    /// Adds the load of a force on a column.
+    fn add_force(&self, column: &Column, force: f64, to: &mut [f64]) {
+        let of_group = column.ring.iter().map(|(i, load)| (self.start(*i), load));
+        let small = (self.start(self.groups.len()), &column.small);
+        for (start, load) in of_group.chain([small]) {
+            load.iter().for_each(|&(k, value)| to[start + k] += value * force);
+        }
+    }
+
+    /// S^-1 of the columns of one group.
     fn answer(&self, i: usize) -> Answer {
-        let Some(ring) = &self.rings[i] else {
-            return Answer::default();
-        };
+        let ring = &self.groups[i];
         let of_ring = |column: &Column| column.ring.as_ref().is_some_and(|r| r.0 == i);
         let numbers: Vec<usize> = (0..self.columns.len())
             .filter(|&j| of_ring(&self.columns[j]))
@@ -163,12 +164,11 @@ impl VibratingBearing {
 
     /// The dense matrix over (t in units of force, p), row-major.
     fn matrix(&self) -> Vec<f64> {
-        let (n_columns, n_small) = (self.columns.len(), self.small_mass.len());
+        let (n_columns, n_small) = (self.columns.len(), self.small.n());
         let n = n_columns + n_small;
         // Motion of every column under every force, and under every small dof.
         let mut motion = vec![0.0; n_columns * n];
-        for (i, answer) in self.answers.iter().enumerate() {
-            let Some(ring) = &self.rings[i] else { continue };
+        for (answer, ring) in self.answers.iter().zip(&self.groups) {
             for (&k, x) in answer.numbers.iter().zip(answer.columns.chunks_exact(ring.n())) {
                 for &j in &answer.numbers {
                     motion[n * j + k] = -self.force_unit * self.motion(j, x);
@@ -193,8 +193,11 @@ impl VibratingBearing {
                 matrix[n * (n_columns + k) + j] += value * self.force_unit;
             }
         }
-        for (k, mass) in self.small_mass.iter().enumerate() {
-            matrix[(n + 1) * (n_columns + k)] += self.shift * mass;
+        for &(i, k, mass) in &self.small.mass {
+            matrix[n * (n_columns + i) + n_columns + k] += self.shift * mass;
+        }
+        for &(i, k, stiffness) in &self.small.stiffness {
+            matrix[n * (n_columns + i) + n_columns + k] += stiffness;
         }
         matrix
     }
@@ -219,97 +222,68 @@ impl VibratingBearing {
         if self.columns.is_empty() {
             return;
         }
-        let starts = self.starts();
-        let lengths: Vec<f64> = (0..self.columns.len())
-            .map(|j| {
-                let column = &self.columns[j];
-                let ring = column.ring.as_ref();
-                ring.map_or(0.0, |(i, load)| sparse_dot(load, self.part(y, *i)))
-                    + sparse_dot(&column.small, self.part(y, 2))
-            })
-            .collect();
+        let small = self.small_part(y);
+        let length = |column: &Column| {
+            let ring = column.ring.as_ref();
+            ring.map_or(0.0, |(i, load)| sparse_dot(load, self.part(y, *i)))
+                + sparse_dot(&column.small, small)
+        };
+        let lengths: Vec<f64> = self.columns.iter().map(length).collect();
         for (j, column) in self.columns.iter().enumerate() {
-            let force = force(j, &lengths);
-            if let Some((i, load)) = &column.ring {
-                load.iter()
-                    .for_each(|&(k, value)| result[starts[*i] + k] += value * force);
+            self.add_force(column, force(j, &lengths), result);
+        }
+    }
+
+    /// What each group makes of its part of a block of vectors, column-major; zero for the small dofs.
+    fn of_groups(&self, x: &[f64], make: impl Fn(&VibratingRings, Vec<f64>) -> Vec<f64> + Sync) -> Vec<f64> {
+        let n = self.n();
+        let of_group = |(i, group): (usize, &VibratingRings)| {
+            let own = x.chunks_exact(n).flat_map(|y| self.part(y, i)).copied();
+            make(group, own.collect())
+        };
+        let parts: Vec<Vec<f64>> = self.groups.par_iter().enumerate().map(of_group).collect();
+        let mut result = vec![0.0; x.len()];
+        let mut start = 0;
+        for (group, part) in self.groups.iter().zip(&parts) {
+            for (y, new) in result.chunks_exact_mut(n).zip(part.chunks_exact(group.n())) {
+                y[start..start + group.n()].copy_from_slice(new);
             }
-            let small = column.small.iter();
-            small.for_each(|&(k, value)| result[starts[2] + k] += value * force);
-        }
-    }
-
-    /// Bearing of a ring of a block of vectors, column-major.
-    fn parts(&self, x: &[f64], i: usize) -> Vec<f64> {
-        let columns = x.chunks_exact(self.n());
-        columns.flat_map(|y| self.part(y, i).iter().copied()).collect()
-    }
-
-    /// Products of the rings' own matrices with a block; `small` gives the factor of each small dof.
-    fn ring_products(
-        &self,
-        x: &[f64],
-        product: impl Fn(&VibratingRing, Vec<f64>) -> Vec<f64> + Sync,
-        small: impl Fn(usize) -> f64,
-    ) -> Vec<f64> {
-        let starts = self.starts();
-        let of_ring = |i: usize| Some(product(self.rings[i].as_ref()?, self.parts(x, i)));
-        let (inner, outer) = rayon::join(|| of_ring(0), || of_ring(1));
-        let mut result = x.to_vec();
-        for (i, part) in [inner, outer].iter().enumerate() {
-            self.put(&mut result, i, part.as_deref());
-        }
-        for y in result.chunks_exact_mut(self.n()) {
-            let dofs = y[starts[2]..].iter_mut().enumerate();
-            dofs.for_each(|(k, x)| *x *= small(k));
+            start += group.n();
         }
         result
     }
 
-    /// Replaces the part of a ring in a block.
-    fn put(&self, x: &mut [f64], i: usize, part: Option<&[f64]>) {
-        let (Some(part), starts) = (part, self.starts()) else {
-            return;
-        };
-        let columns = x.chunks_exact_mut(self.n());
-        for (y, new) in columns.zip(part.chunks_exact(starts[i + 1] - starts[i])) {
-            y[starts[i]..starts[i + 1]].copy_from_slice(new);
-        }
-    }
-
-    /// Corrects the rings' answers z of one vector for what couples them.
-    fn couple(&self, y: &mut [f64]) {
+    /// Corrects the groups' answers of one vector for what couples them; `small` are the loads on the small dofs.
+    fn couple(&self, y: &mut [f64], small: &[f64]) {
         let Some(dense) = &self.dense else { return };
-        let starts = self.starts();
         let n_columns = self.columns.len();
-        let mut rhs = vec![0.0; n_columns + self.small_mass.len()];
+        let mut rhs = vec![0.0; n_columns + self.small.n()];
         let motion = |(j, column): (usize, &Column)| {
             let ring = column.ring.as_ref();
-            ring.map_or(0.0, |(i, _)| self.motion(j, &y[starts[*i]..starts[*i + 1]]))
+            ring.map_or(0.0, |(i, _)| self.motion(j, self.part(y, *i)))
         };
         let motions: Vec<f64> = self.columns.iter().enumerate().map(motion).collect();
         for j in 0..n_columns {
             rhs[j] = self.law(j).1.iter().map(|&(k, share)| share * motions[k]).sum();
         }
-        rhs[n_columns..].copy_from_slice(&y[starts[2]..]);
+        rhs[n_columns..].copy_from_slice(small);
         dense.solve(&mut rhs, 1);
-        for (i, answer) in self.answers.iter().enumerate() {
-            let part = &mut y[starts[i]..starts[i + 1]];
-            if part.is_empty() {
-                continue;
-            }
+        let mut start = 0;
+        for (answer, group) in self.answers.iter().zip(&self.groups) {
+            let part = &mut y[start..start + group.n()];
             for (&j, x) in answer.numbers.iter().zip(answer.columns.chunks_exact(part.len())) {
                 let force = self.force_unit * rhs[j];
                 part.iter_mut().zip(x).for_each(|(y, x)| *y -= force * x);
             }
+            start += group.n();
         }
-        y[starts[2]..].copy_from_slice(&rhs[n_columns..]);
+        y[start..].copy_from_slice(&rhs[n_columns..]);
     }
 }
 
-impl EigenProblem for VibratingBearing {
+impl EigenProblem for VibratingSystem {
     fn n(&self) -> usize {
-        self.starts()[3]
+        self.start(self.groups.len()) + self.small.n()
     }
 
     fn shift(&self) -> f64 {
@@ -317,8 +291,10 @@ impl EigenProblem for VibratingBearing {
     }
 
     fn stiffness(&self, x: &[f64], n_vectors: usize) -> Vec<f64> {
-        let mut result = self.ring_products(x, |ring, y| ring.stiffness(&y, n_vectors), |_| 0.0);
+        let mut result = self.of_groups(x, |group, y| group.stiffness(&y, n_vectors));
+        let start = self.start(self.groups.len());
         for (y, result) in x.chunks_exact(self.n()).zip(result.chunks_exact_mut(self.n())) {
+            SmallDofs::add_product(&self.small.stiffness, self.small_part(y), &mut result[start..]);
             self.add_columns(y, result, |j, lengths| match self.columns[j].role {
                 Role::Link(..) => self.law(j).1.iter().map(|&(k, share)| share * lengths[k]).sum(),
                 Role::Mass(_) | Role::Constraint => 0.0,
@@ -328,8 +304,10 @@ impl EigenProblem for VibratingBearing {
     }
 
     fn mass(&self, x: &[f64], n_vectors: usize) -> Vec<f64> {
-        let mut result = self.ring_products(x, |ring, y| ring.mass(&y, n_vectors), |k| self.small_mass[k]);
+        let mut result = self.of_groups(x, |group, y| group.mass(&y, n_vectors));
+        let start = self.start(self.groups.len());
         for (y, result) in x.chunks_exact(self.n()).zip(result.chunks_exact_mut(self.n())) {
+            SmallDofs::add_product(&self.small.mass, self.small_part(y), &mut result[start..]);
             self.add_columns(y, result, |j, lengths| match self.columns[j].role {
                 Role::Mass(mass) => mass * lengths[j],
                 Role::Link(..) | Role::Constraint => 0.0,
@@ -338,30 +316,21 @@ impl EigenProblem for VibratingBearing {
         result
     }
 
-    fn solve(&self, mut b: Vec<f64>, n_vectors: usize) -> Vec<f64> {
-        let solved = |i: usize| {
-            let ring = self.rings[i].as_ref()?;
-            let mut part = self.parts(&b, i);
-            ring.solve(&mut part, n_vectors);
-            Some(part)
-        };
-        let (inner, outer) = rayon::join(|| solved(0), || solved(1));
-        for (i, part) in [inner, outer].iter().enumerate() {
-            self.put(&mut b, i, part.as_deref());
-        }
-        b.chunks_exact_mut(self.n()).for_each(|y| self.couple(y));
-        b
+    fn solve(&self, b: Vec<f64>, n_vectors: usize) -> Vec<f64> {
+        let mut x = self.of_groups(&b, |group, mut loads| {
+            group.solve(&mut loads, n_vectors);
+            loads
+        });
+        let columns = x.chunks_exact_mut(self.n()).zip(b.chunks_exact(self.n()));
+        columns.for_each(|(y, loads)| self.couple(y, self.small_part(loads)));
+        x
     }
 
     fn remove_reactions(&self, force: &mut [f64]) {
-        let starts = self.starts();
-        for (i, directions) in self.reactions.iter().enumerate() {
-            let part = &mut force[starts[i]..starts[i + 1]];
-            self.rings[i].iter().for_each(|ring| ring.remove_reactions(part));
-            for direction in directions {
-                let size = dot(part, direction);
-                part.iter_mut().zip(direction).for_each(|(f, d)| *f -= size * d);
-            }
+        self.remove_ties(force);
+        for direction in &self.reactions {
+            let size = dot(force, direction);
+            force.iter_mut().zip(direction).for_each(|(f, d)| *f -= size * d);
         }
     }
 }

@@ -5,8 +5,9 @@ use std::sync::Arc;
 use body::SeatTie;
 use contact::Side;
 use dynamics::kinematics::Speed;
+use dynamics::modes::bearing_modes;
 use dynamics::motion::{Motion, MotionSettings, MotionState, StepCache};
-use dynamics::{Backend, ContactMode, Hold, Model, RingModel, ShaftDof};
+use dynamics::{Backend, ContactMode, Hold, Mode, Model, ModesSettings, RingModel, ShaftDof};
 use fem::Material;
 
 use super::support::rings::ring;
@@ -144,6 +145,55 @@ fn ring_and_shaft_move_as_one_mesh() {
     println!("shaft, tilts and forces: {errors:?}");
     let [shaft, tilts, forces] = errors[1];
     assert!(shaft < 1e-3 && tilts < 1e-3 && forces < 5e-3, "{errors:?}");
+}
+
+/// Wrong: ring and shaft would vibrate otherwise than the body that they are together, free or with a shaft that is
+/// held along an axis and in its tilts.
+#[test]
+fn ring_and_shaft_have_the_modes_of_one_mesh() {
+    let own = hollow_shaft(3).0;
+    let settings = ModesSettings {
+        number: 48,
+        shift: None,
+        backend: Backend::Auto,
+    };
+    let held = [
+        ShaftDof::Free,
+        ShaftDof::Prescribed(0.0),
+        ShaftDof::Free,
+        ShaftDof::Prescribed(0.0),
+        ShaftDof::Prescribed(0.0),
+    ];
+    for shaft in [[ShaftDof::Free; 5], held] {
+        let of = |ring: RingModel, backend: Backend| -> Vec<Mode> {
+            let model = Model {
+                shaft,
+                ..free(ring, backend)
+            };
+            let found = bearing_modes(&model, &equilibrium(&model), settings, &mut |_| ());
+            let elastic = found.unwrap().modes.into_iter().filter(|mode| !mode.is_rigid);
+            elastic.take(12).collect()
+        };
+        let expected = of(as_one(3), Backend::Sparse);
+        let mut errors = Vec::new();
+        for (n, below) in [([4, 2], 1e3), ([24, 8], 60e3)] {
+            let found = of(on_shaft(own.clone(), n, Some(below)), Backend::Auto);
+            let pairs = found.iter().zip(&expected);
+            let off = pairs.map(|(a, b)| (a.frequency / b.frequency - 1.0).abs());
+            errors.push(off.fold(0.0, f64::max));
+            for mode in &found {
+                assert!(
+                    mode.bound < 1e-6 * mode.frequency && mode.residual < 1e-6,
+                    "{mode:?}"
+                );
+                assert!(mode.kinetic_bodies[0] > 0.0 && mode.shape.bodies[0].is_some());
+                let still = (0..5).filter(|&dof| shaft[dof] != ShaftDof::Free);
+                still.for_each(|dof| assert!(mode.shape.shaft[dof].abs() < 1e-6));
+            }
+        }
+        println!("frequencies: {errors:?}");
+        assert!(errors[1] < 2e-3 && errors[1] < errors[0], "{errors:?}");
+    }
 }
 
 /// Wrong: the joint, the shaft or its turning would make or eat energy.

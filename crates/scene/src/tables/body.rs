@@ -134,8 +134,6 @@ pub struct BodyContext<'a> {
     pub backend: Backend,
     /// Whether the scene moves in time, or asks for natural modes.
     pub moves: bool,
-    /// Whether it asks for natural modes.
-    pub has_modes: bool,
     /// Effects of the scene.
     pub effects: Vec<&'static str>,
 }
@@ -208,12 +206,6 @@ fn refuse_beside_body(name: &str, ring: RingName, context: &BodyContext<'_>, pro
         problems.add(format!(
             "speed.outer turns the outer ring, but body {name:?} carries it and stands; remove speed.outer or \
              [[body]]"
-        ));
-    }
-    if context.has_modes && ring == RingName::Inner {
-        problems.add(format!(
-            "[modes] does not go with body {name:?} on the shaft; use inner.support = \"clamped\" or \
-             \"mean_motion\" for modes"
         ));
     }
     let refused = match ring {

@@ -92,6 +92,18 @@ impl ModeBody {
 }
 
 impl RawModes {
+    /// Reports what a list of bearings does not have modes of.
+    pub fn refuse_in_list(&self, problems: &mut Problems) {
+        let named = self.bodies.iter().flatten();
+        for body in named.filter(|body| **body != ModeBody::Bearing) {
+            problems.add(format!(
+                "modes.bodies names {:?}, a ring alone, but a list of bearings vibrates as one with its shaft; leave \
+                 modes.bodies out, or give one table [bearing] for rings alone",
+                body.typed()
+            ));
+        }
+    }
+
     /// Checks numbers, and that the bodies have modes; `None` when there are problems.
     pub fn check(&self, context: ModesContext, problems: &mut Problems) -> Option<Modes> {
         let before = problems.len();

@@ -48,7 +48,6 @@ impl RawScene {
             turns_outer: self.has_speed()[1],
             backend,
             moves: self.dynamic.is_some() || self.modes.is_some(),
-            has_modes: self.modes.is_some(),
             effects: self.effects.names(),
         };
         check_bodies(&self.body, &context, problems, assumed)

@@ -22,7 +22,7 @@ use super::turned::{turn_region, turn_speed, turn_speeds, turn_weight};
 use super::{OF_TYPE, ON_SHAFT, RawSeveral, SeveralScene, is_of_type, set};
 use crate::tables::shaft::Motion;
 
-/// Tables of the list that no bearing has, or that a list is refused with.
+/// Tables of the list that no bearing has, or that are given to it apart, or that a list is refused with.
 const OF_LIST: [&str; 15] = [
     "bearing",
     "shaft",
@@ -64,9 +64,9 @@ impl Composer<'_> {
         let pairing = pairing.unwrap_or_default();
         let at_rest = raw.analysis(document, &mut problems);
         let (scenes, told) = self.scenes(&raw, document, &pairing)?;
-        let analysis = match raw.dynamic {
-            Some(_) => scenes.iter().flatten().map(|s| s.analysis.clone()).next(),
-            None => at_rest,
+        let analysis = match raw.dynamic.is_some() || raw.modes.is_some() {
+            true => scenes.iter().flatten().map(|s| s.analysis.clone()).next(),
+            false => at_rest,
         };
         check_places(&raw.bearing, &scenes, &mut problems);
         let balls = scenes.iter().flatten().map(|s| s.bearing.ball_diameter);
@@ -199,12 +199,14 @@ impl Composer<'_> {
                 set(document, &format!("shaft.{key}"), &format!("\"0 {unit}\""));
             }
             set(document, "shaft.load_point", "\"0 m\"");
-            match list.get("dynamic") {
-                Some(dynamic) => document.insert("dynamic", dynamic.clone()),
-                None => {
-                    edit::remove_series(document);
-                    document.insert("static", Item::Table(Table::new()))
-                }
+            if let Some(dynamic) = list.get("dynamic") {
+                document.insert("dynamic", dynamic.clone());
+                return;
+            }
+            edit::remove_series(document);
+            match list.get("modes") {
+                Some(modes) => document.insert("modes", modes.clone()),
+                None => document.insert("static", Item::Table(Table::new())),
             };
         })
     }
@@ -327,7 +329,7 @@ fn check_output(raw: &RawSeveral, list: &DocumentMut, problems: &mut Problems) {
     for name in edit::OF_SERIES.into_iter().filter(given) {
         problems.add(format!(
             "[output.{name}] is for a list of bearings in motion, [dynamic], only: at rest every bearing has its own \
-             [static] files; remove it"
+             [static] or [modes] files; remove it"
         ));
     }
 }

@@ -40,6 +40,7 @@ use self::shaft::RawCommonShaft;
 pub use self::shaft::{CommonShaft, RigidShaft, ShaftKind};
 use super::dynamic::RawDynamic;
 use super::edit;
+use super::modes::RawModes;
 use super::sweep::{Analysis, RawStatic, RawSweep};
 
 /// Effects that load the shaft.
@@ -103,7 +104,7 @@ struct RawSeveral {
     lubricant: Option<IgnoredAny>,
     quasi_static: Option<IgnoredAny>,
     dynamic: Option<RawDynamic>,
-    modes: Option<IgnoredAny>,
+    modes: Option<RawModes>,
 }
 
 /// A checked scene with a list of bearings, SI.
@@ -127,7 +128,7 @@ pub struct SeveralScene {
     pub effects: Effects,
     /// Speeds of the rings in the frame of the shaft; none turns when `None`.
     pub speed: Option<RingSpeeds>,
-    /// [`Analysis::Static`], [`Analysis::Sweep`] or [`Analysis::Dynamic`].
+    /// [`Analysis::Static`], [`Analysis::Sweep`], [`Analysis::Dynamic`] or [`Analysis::Modes`].
     pub analysis: Analysis,
 }
 
@@ -168,15 +169,17 @@ impl RawSeveral {
 
     /// Reports tables that a list of bearings does not go with.
     fn refuse(&self, problems: &mut Problems) {
-        let in_time = [("quasi_static", &self.quasi_static), ("modes", &self.modes)];
         if let Some(dynamic) = &self.dynamic {
             dynamic.refuse_in_list(problems);
         }
-        for (name, _) in in_time.iter().filter(|(_, table)| table.is_some()) {
-            problems.add(format!(
-                "[{name}] is not for a list of bearings yet; use [static], [sweep] or [dynamic], or give one table \
-                 [bearing]"
-            ));
+        if let Some(modes) = &self.modes {
+            modes.refuse_in_list(problems);
+        }
+        if self.quasi_static.is_some() {
+            problems.add(
+                "[quasi_static] is not for a list of bearings yet; use [static], [sweep], [dynamic] or [modes], or \
+                 give one table [bearing]",
+            );
         }
         let others = [
             ("profiles", &self.profiles),
@@ -202,19 +205,20 @@ impl RawSeveral {
         }
     }
 
-    /// The analysis of a list at rest; a motion is read with the bearings.
+    /// The analysis of a list at rest; a motion and modes are read with the bearings.
     fn analysis(&self, document: &DocumentMut, problems: &mut Problems) -> Option<Analysis> {
         let given = [
             ("[static]", self.r#static.is_some()),
             ("[sweep]", self.sweep.is_some()),
             ("[dynamic]", self.dynamic.is_some()),
+            ("[modes]", self.modes.is_some()),
         ];
         let given: Vec<&str> = given
             .iter()
             .filter(|(_, is)| *is)
             .map(|(name, _)| *name)
             .collect();
-        let is_refused = self.quasi_static.is_some() || self.modes.is_some();
+        let is_refused = self.quasi_static.is_some();
         match given[..] {
             [_] => match &self.sweep {
                 Some(sweep) => sweep.check(document, problems).map(Analysis::Sweep),
@@ -222,8 +226,9 @@ impl RawSeveral {
             },
             [] if is_refused => None,
             [] => {
-                problems
-                    .add("the scene has no analysis; add one of the tables [static], [sweep] and [dynamic]");
+                problems.add(
+                    "the scene has no analysis; add one of the tables [static], [sweep], [dynamic] and [modes]",
+                );
                 None
             }
             [a, b] => {
@@ -233,8 +238,10 @@ impl RawSeveral {
                 None
             }
             _ => {
-                problems
-                    .add("the scene has all of [static], [sweep] and [dynamic]; keep exactly one analysis");
+                problems.add(format!(
+                    "the scene has {}; keep exactly one analysis",
+                    given.join(", ")
+                ));
                 None
             }
         }

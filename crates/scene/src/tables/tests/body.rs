@@ -203,14 +203,15 @@ fn a_body_on_the_shaft_carries_the_inner_ring_and_goes_with_what_it_knows() {
         format!("{}{files}{}", &text[..start], &text[end..])
     };
     let modes = on_shaft("").replace("[static]", "[modes]\nnumber = 4");
+    let scene = parse(&modes, &[]).unwrap_or_else(|e| panic!("{e}"));
+    assert_eq!(
+        scene.bodies[0].as_ref().and_then(|body| body.modes_below),
+        Some(20e3)
+    );
     for (text, expected) in [
         (
             matrix,
             "comes from a stiffness matrix, of which nothing says how it moves with the shaft; give it as a mesh",
-        ),
-        (
-            modes,
-            "[modes] does not go with body \"plummer block\" on the shaft; use inner.support",
         ),
         (
             on_shaft("[effects.fit.inner]\ninterference = \"5 um\""),

@@ -377,8 +377,20 @@ fn bad_lists_are_refused_with_advice() {
             "effects.contact_damping",
         ),
         (
-            beam.replace("[static]", "[modes]\n"),
-            "[modes] is not for a list of bearings yet; use [static], [sweep] or [dynamic]",
+            beam.replace("[static]", "[modes]\nnumber = 3\nbodies = [\"outer\"]\n"),
+            "modes.bodies names \"outer\", a ring alone, but a list of bearings vibrates as one with its shaft; leave",
+        ),
+        (
+            beam.replace("[static]", "[modes]\nnumber = 0\n"),
+            "modes.number is 0",
+        ),
+        (
+            beam.replace("[static]", "[static]\n[modes]\nnumber = 3\n"),
+            "the scene has both [static] and [modes]; keep exactly one analysis",
+        ),
+        (
+            beam.replace("[static]", "[speed]\ninner = \"100 rpm\"\n[modes]\nnumber = 3\n"),
+            "[speed] is given, but [modes] are those of a bearing that does not turn",
         ),
         (
             beam.replace("[static]", "[quasi_static]\n"),
@@ -386,7 +398,7 @@ fn bad_lists_are_refused_with_advice() {
         ),
         (
             beam.replace("[static]", ""),
-            "the scene has no analysis; add one of the tables [static], [sweep] and [dynamic]",
+            "the scene has no analysis; add one of the tables [static], [sweep], [dynamic] and [modes]",
         ),
         (
             beam.replace("model = \"beam\"", "model = \"elastic\""),
