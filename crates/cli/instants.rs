@@ -61,6 +61,10 @@ pub trait OverInstants {
     /// Time of an instant, s.
     fn time(&self, n: u64) -> f64;
 
+    /// A step and its time, for a line of progress.
+    fn step_text(&self, n: u64) -> String {
+        format!("step {n} of {}, t = {:.4e} s", self.due().last, self.time(n))
+    }
     /// The line of progress before an instant is computed, where one is due; `first` is the first of this process.
     fn stage(&self, n: u64, first: u64) -> Option<String>;
     /// Computes the instant `n` from the one before, which stays the known one on failure.

@@ -284,12 +284,8 @@ impl OverInstants for March<'_> {
 
     fn stage(&self, n: u64, first: u64) -> Option<String> {
         (n == first || n % PROGRESS_STEPS == 1).then(|| {
-            format!(
-                "step {n} of {}, t = {:.4e} s, waited {:.2} s for the disk",
-                self.dynamic.n_steps,
-                self.time(n),
-                self.files.waited().as_secs_f64()
-            )
+            let waited = self.files.waited().as_secs_f64();
+            format!("{}, waited {waited:.2} s for the disk", self.step_text(n))
         })
     }
 

@@ -218,14 +218,7 @@ impl OverInstants for QuasiStaticRun<'_, '_> {
     }
 
     fn stage(&self, n: u64, _first: u64) -> Option<String> {
-        let text = || {
-            format!(
-                "step {n} of {}, t = {:.4e} s",
-                self.settings.n_steps,
-                self.time(n)
-            )
-        };
-        (n % PROGRESS_STEPS == 1).then(text)
+        (n % PROGRESS_STEPS == 1).then(|| self.step_text(n))
     }
 
     fn advance(&mut self, n: u64, _progress: &mut Progress) -> Result<(), Failure> {

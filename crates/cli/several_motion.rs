@@ -396,8 +396,7 @@ impl OverInstants for ListMarch<'_> {
     }
 
     fn stage(&self, n: u64, first: u64) -> Option<String> {
-        let text = || format!("step {n} of {}, t = {:.4e} s", self.dynamic.n_steps, self.time(n));
-        (n == first || n % PROGRESS_STEPS == 1).then(text)
+        (n == first || n % PROGRESS_STEPS == 1).then(|| self.step_text(n))
     }
 
     fn advance(&mut self, _n: u64, progress: &mut Progress) -> Result<(), Failure> {

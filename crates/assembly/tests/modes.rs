@@ -1,6 +1,7 @@
 //! Natural modes of bearings on a shaft: against one bearing alone, closed forms, the linearised bearings and their own
 //! symmetry.
 
+mod heavy;
 mod lists;
 #[path = "../../dynamics/tests/support/mod.rs"]
 mod support;
@@ -18,6 +19,7 @@ use input::Schedule;
 use ring::rigid::RigidInertia;
 
 use Orientation::{MinusZ, PlusZ};
+use heavy::swings;
 use lists::{At, bare, flexible, on_shaft};
 use support::rings::Level;
 use support::{Case, equilibrium};
@@ -209,15 +211,7 @@ fn a_heavy_shaft_swings_on_the_stiffness_of_its_pair() {
         let (solver, solution) = solve(&mut list);
         let linear = LinearAssembly::new(&list, &solver, &solution, DampingLaws::default()).unwrap();
         let stiffness = linear.of_shaft(&list, 0.0).unwrap();
-        let root = |i: usize| if i < 3 { heavy.mass } else { heavy.transverse }.sqrt();
-        let scaled: Vec<f64> = (0..25)
-            .map(|k| stiffness[k / 5][k % 5] / (root(k / 5) * root(k % 5)))
-            .collect();
-        let expected = dense::symmetric_eigen(5, &scaled).unwrap().0;
-        let expected: Vec<f64> = expected
-            .iter()
-            .map(|w| w.sqrt() / std::f64::consts::TAU)
-            .collect();
+        let expected = swings(&heavy, &stiffness);
         let found = frequencies(&of_list(&mut list, 5));
         println!("{found:?} {expected:?}");
         compare(&found, &expected, 3e-4);

@@ -1,5 +1,6 @@
 //! Several bearings on a shaft through time, against one bearing alone, modes of the same equations, and ledgers.
 
+mod heavy;
 mod housed;
 mod lists;
 mod near;

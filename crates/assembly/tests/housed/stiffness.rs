@@ -7,6 +7,7 @@ use ring::rigid::RigidInertia;
 
 use super::shaft::{CARRIED, HELD_BELOW, on_one, on_two};
 use super::*;
+use crate::heavy::swings;
 
 /// An equilibrium from another one.
 fn from(solver: &mut AssemblySolver, list: &mut Assembly, start: &AssemblySolution) -> AssemblySolution {
@@ -121,20 +122,12 @@ fn modes_over_the_speed_have_the_bodies_that_bearings_share() {
         transverse: 8.0,
         polar: 6.0,
     };
-    let root = |i: usize| if i < 3 { heavy.mass } else { heavy.transverse }.sqrt();
     for list in [
         tied_pair(Side::Outer, in_one(true, 5e9), [0, 1]),
         in_and_on(in_one(true, 5e9), on_one(true, HELD_BELOW)),
     ] {
         let (found, stiffness) = over_speed(list, &heavy, 0.0);
-        let scaled: Vec<f64> = (0..25)
-            .map(|k| stiffness[k / 5][k % 5] / (root(k / 5) * root(k % 5)))
-            .collect();
-        let expected = dense::symmetric_eigen(5, &scaled).unwrap().0;
-        let expected: Vec<f64> = expected
-            .iter()
-            .map(|w| w.sqrt() / std::f64::consts::TAU)
-            .collect();
+        let expected = swings(&heavy, &stiffness);
         println!("{:?} {expected:?}", &found[..5]);
         // The balls, and the inertia of rings and shaft about another point, are what is left.
         assert!(off(&found[..5], &expected) < 1e-3, "{found:?} {expected:?}");

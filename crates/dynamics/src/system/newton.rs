@@ -73,7 +73,6 @@ pub struct Policy<'p> {
 }
 
 /// A tangent, as kept for further iterations.
-#[derive(Default)]
 pub struct KeptTangent {
     /// Row-major; scaled once it is factored.
     matrix: Vec<f64>,
