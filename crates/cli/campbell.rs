@@ -8,6 +8,7 @@ use std::ops::Range;
 use std::path::PathBuf;
 
 use anyhow::anyhow;
+use assembly::whirl::TurningAssembly;
 use clap::Args;
 use contact::Side;
 use dynamics::kinematics::Speed;
@@ -19,8 +20,9 @@ use results::stiffness::require_free;
 use results::survey::say_doubts;
 use scene::{AnyScene, Scene, build_model, doubts, model_with_rings};
 
-use crate::campbell_files::{self, Diagram, GROWS, require_one_point};
+use crate::campbell_files::{self, Diagram, GROWS, MODES_OF_BEAM, growing, require_one_point};
 use crate::progress::Progress;
+use crate::several::solving;
 use crate::several_campbell;
 use crate::stiffness::{instant, laws, pose_at, require_load};
 
@@ -40,7 +42,8 @@ pub struct CampbellCommand {
     /// Folder of campbell.csv, campbell_lines.csv and the figure; nothing in it is replaced.
     #[arg(long)]
     out: PathBuf,
-    /// Number of modes, from the lowest; default: as many as the shaft has free dofs, 10 of a beam.
+    /// Number of modes, from the lowest; default: as many as the shaft has free dofs, 10 of a beam or with
+    /// elastic bodies.
     #[arg(long)]
     number: Option<usize>,
     /// Changes a value of the scene: path=value, such as shaft.mass="2 kg".
@@ -113,9 +116,11 @@ pub fn campbell(command: &CampbellCommand) -> Result<(), Failure> {
 }
 
 /// How many modes are wanted: at least one.
-fn number_of_modes(command: &CampbellCommand, model: &Model) -> Result<usize, Failure> {
+fn number_of_modes(command: &CampbellCommand, model: &Model, has_bodies: bool) -> Result<usize, Failure> {
     let n_free = model.shaft.iter().filter(|dof| **dof == ShaftDof::Free).count();
-    let number = command.number.unwrap_or(n_free);
+    let number = command
+        .number
+        .unwrap_or(if has_bodies { MODES_OF_BEAM } else { n_free });
     if number == 0 {
         let problem = match command.number {
             Some(_) => "--number is 0; expected at least 1",
@@ -138,7 +143,8 @@ fn diagram(
     let (mut model, _) = build_model(&scene)?;
     let mut warnings = doubts(&scene, &model);
     say_doubts(&warnings);
-    let number = number_of_modes(command, &model)?;
+    let bodies = TurningAssembly::of_one("bearing", &model).map_err(solving)?;
+    let number = number_of_modes(command, &model, bodies.is_some())?;
     let inertia = turning_inertia(&model).map_err(Failure::solving)?;
     if inertia.polar == 0.0 && model.shaft[3..].contains(&ShaftDof::Free) {
         warnings.push("shaft.polar_inertia is 0, so the speed splits no modes".to_string());
@@ -157,14 +163,24 @@ fn diagram(
         let solution = solver.solve_at(&model, &pose_at(&scene, time), before.as_ref());
         let solution = solution.map_err(Failure::solving).map_err(at)?;
         require_load(&solution).map_err(at)?;
-        let modes = Linearisation::new(&model, &solver, &solution, laws(&scene))
-            .and_then(|bearing| TurningShaft::new(&model, &bearing, inertia, speeds[0])?.modes());
-        let mut modes = modes.map_err(Failure::solving).map_err(at)?;
+        let linear = Linearisation::new(&model, &solver, &solution, laws(&scene));
+        let linear = linear.map_err(Failure::solving).map_err(at)?;
+        let turning = match &bodies {
+            None => TurningShaft::new(&model, &linear, inertia, speeds[0]).map_err(Failure::solving),
+            Some(bodies) => {
+                let found = bodies.equations_of_one(&model, (&solver, &solution), &linear, speeds[0]);
+                found.map_err(solving)
+            }
+        };
+        let mut modes = turning
+            .map_err(at)?
+            .modes()
+            .map_err(Failure::solving)
+            .map_err(at)?;
         // Balls that creep back have no frequency.
         modes.retain(|mode| mode.frequency > 0.0 || mode.damping_ratio < GROWS);
         modes.truncate(number);
-        let growing = modes.iter().position(|mode| mode.damping_ratio < GROWS);
-        warnings.extend(growing.map(|i| format!("{rpm} rpm: mode {} grows by itself", i + 1)));
+        warnings.extend(growing(rpm, &modes));
         // What is wrong at a speed is more so at the next.
         if !is_warned {
             warnings.extend(

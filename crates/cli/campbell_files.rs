@@ -6,6 +6,7 @@ use anyhow::anyhow;
 use comm::print;
 use contact::BearingGeometry;
 use dynamics::kinematics::SlipRatios;
+use dynamics::whirl::WhirlMode;
 use results::campbell::{CAMPBELL_LINES, CAMPBELL_TABLE, ModesAtSpeed, print_campbell, write_campbell};
 use results::failure::Failure;
 use results::summary::print_warnings;
@@ -14,8 +15,26 @@ use scene::Analysis;
 
 use crate::linear_figures::draw;
 
-/// Damping ratio below which a mode counts as one that grows: far beyond round-off.
-pub const GROWS: f64 = -1e-8;
+/// Damping ratio below which a mode counts as one that grows.
+///
+/// Loads that follow the contact angles, such as the gyroscopic moment that friction carries, and moments about axes
+/// that stay in space make the stiffness unsymmetric: of a pair without damping one whirl grows and the other decays,
+/// by up to some 1e-4 (`docs/stiffness.md`). Real bearings damp by more: (0.25 to 2.5)e-5 s of their stiffness (Kramer,
+/// Dynamics of Rotors and Foundations, 1993), so by 1e-3 or more from 130 Hz on.
+pub const GROWS: f64 = -1e-3;
+
+/// What a user should know of a mode that grows, by its number among those shown.
+pub fn growing(rpm: f64, modes: &[WhirlMode]) -> Option<String> {
+    let number = modes.iter().position(|mode| mode.damping_ratio < GROWS)?;
+    Some(format!(
+        "{rpm} rpm: mode {} grows by itself, with a damping ratio of {:.1e}",
+        number + 1,
+        modes[number].damping_ratio
+    ))
+}
+
+/// Modes of a beam or of elastic bodies that are shown where nobody says how many.
+pub const MODES_OF_BEAM: usize = 10;
 
 /// A diagram, and what a reader should know of it.
 pub struct Diagram {
@@ -60,4 +79,30 @@ pub fn write(
         out.display()
     ));
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use dynamics::whirl::Whirl;
+
+    use super::*;
+
+    /// Wrong: what loads that follow contact angles leave would count as an instability, or one go unsaid.
+    #[test]
+    fn a_mode_that_grows_is_told_of_beyond_what_following_loads_leave() {
+        let mode = |damping_ratio| WhirlMode {
+            frequency: 300.0,
+            damping_ratio,
+            whirl: Whirl::Backward,
+            roundness: -1.0,
+            shaft_share: 1.0,
+            standing_share: 0.0,
+        };
+        assert_eq!(growing(8000.0, &[mode(-1.2e-4), mode(3e-4)]), None);
+        let told = growing(8000.0, &[mode(1e-4), mode(-2e-3), mode(-3e-3)]).unwrap();
+        assert_eq!(
+            told,
+            "8000 rpm: mode 2 grows by itself, with a damping ratio of -2.0e-3"
+        );
+    }
 }

@@ -6,7 +6,7 @@ use std::path::Path;
 use anyhow::anyhow;
 use assembly::AssemblySolver;
 use assembly::stiffness::LinearAssembly;
-use assembly::whirl::{equations, turning_shaft};
+use assembly::whirl::TurningAssembly;
 use dynamics::DampingLaws;
 use dynamics::kinematics::Speed;
 use results::campbell::{CAMPBELL_LINES, CAMPBELL_TABLE, ModesAtSpeed};
@@ -15,15 +15,12 @@ use results::stiffness::require_free;
 use results::survey::say_doubts;
 use scene::{SeveralScene, assembly_with_rings, build_assembly};
 
-use crate::campbell_files::{self, Diagram, GROWS, require_one_point};
+use crate::campbell_files::{self, Diagram, GROWS, MODES_OF_BEAM, growing, require_one_point};
 use crate::progress::Progress;
 use crate::several::{rings, solving, warnings_at};
 use crate::several_read::all_doubts;
 
-/// Modes of a beam that are shown where nobody says how many.
-const MODES_OF_BEAM: usize = 10;
-
-/// Share of the shaft in the energy below which a mode is one of balls alone, of which there are many.
+/// Share of shaft and housings in the energy below which a mode is one of balls alone, of which there are many.
 const OF_BALLS: f64 = 0.02;
 
 /// Computes the modes at speeds, rpm, and writes them.
@@ -62,7 +59,13 @@ fn diagram(
     let mut warnings = all_doubts(&scene, &assembly);
     say_doubts(&warnings);
     let n_free = assembly.shaft.held.iter().filter(|held| held.is_none()).count();
-    let number = number.unwrap_or(n_free.min(MODES_OF_BEAM));
+    let turning = TurningAssembly::new(&assembly).map_err(solving)?;
+    let default = if turning.has_bodies() {
+        MODES_OF_BEAM
+    } else {
+        n_free.min(MODES_OF_BEAM)
+    };
+    let number = number.unwrap_or(default);
     if number == 0 {
         return Err(Failure::User(anyhow!(
             "no mode is asked for; expected --number of at least 1, and a free motion in [shaft]"
@@ -70,7 +73,6 @@ fn diagram(
     }
     progress.stage("factoring the stiffness of the rings");
     let mut solver = AssemblySolver::new(&assembly).map_err(solving)?;
-    let turning = turning_shaft(&assembly).map_err(solving)?;
     let (mut found, mut before, mut is_warned) = (Vec::new(), None, false);
     for &rpm in speeds {
         let at = |failure: Failure| failure.context(format!("{rpm} rpm"));
@@ -87,15 +89,14 @@ fn diagram(
             .map_err(solving)
             .map_err(at)?;
         let modes = LinearAssembly::new(&assembly, &solver, &solution, DampingLaws::default())
-            .and_then(|linear| equations(&assembly, &turning, &linear, speed));
+            .and_then(|linear| turning.equations((&assembly, &solver), (&solution, &linear), speed));
         let modes = modes.map_err(solving).map_err(at)?.modes();
         let mut modes = modes.map_err(Failure::solving).map_err(at)?;
         // Balls that creep back have no frequency.
         modes.retain(|mode| mode.frequency > 0.0 || mode.damping_ratio < GROWS);
-        modes.retain(|mode| mode.shaft_share > OF_BALLS || mode.damping_ratio < GROWS);
+        modes.retain(|mode| mode.shaft_share + mode.standing_share > OF_BALLS || mode.damping_ratio < GROWS);
         modes.truncate(number);
-        let growing = modes.iter().position(|mode| mode.damping_ratio < GROWS);
-        warnings.extend(growing.map(|i| format!("{rpm} rpm: mode {} grows by itself", i + 1)));
+        warnings.extend(growing(rpm, &modes));
         if !is_warned {
             let found = warnings_at(&format!("from {rpm} rpm on: "), &assembly, &solution);
             is_warned = !found.is_empty();

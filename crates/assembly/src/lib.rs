@@ -26,6 +26,10 @@ pub mod shaft;
 pub mod stiffness;
 pub mod support;
 pub mod whirl;
+mod whirl_bodies;
+mod whirl_in_bodies;
+mod whirl_kept;
+mod whirl_rows;
 
 pub use assembly::{Assembly, AssemblySolution, AssemblySolver};
 pub use beam::{BeamSection, BeamShaft, PointMass};

@@ -30,17 +30,15 @@ pub struct LinearAssembly {
     pub damping: Vec<Option<ShaftMatrix>>,
     /// What bearings do to each other through bodies that carry them.
     pub couplings: Vec<BodyCoupling>,
-    /// Bearings in such bodies with their balls.
-    pub in_bodies: Option<InBodies>,
 }
 
-/// Bearings in bodies that carry several, with their balls.
-pub struct InBodies {
-    /// First row of each: its place on the shaft, then [radial, axial] of its balls, in its own frame; the last is
-    /// their number. A bearing in no such body has no rows.
-    pub starts: Vec<usize>,
+/// Bearings in bodies that carry several.
+struct InBodies {
+    /// First row of each: its place on the shaft, in its own frame; the last is their number. A bearing in no such body
+    /// has no rows.
+    starts: Vec<usize>,
     /// Stiffness, row-major.
-    pub stiffness: Vec<f64>,
+    stiffness: Vec<f64>,
 }
 
 /// Load on a bearing by the motion of the shaft at another, through a body that carries both, in the shaft's frame.
@@ -67,7 +65,6 @@ impl LinearAssembly {
             stiffness: Vec::new(),
             damping: Vec::new(),
             couplings: Vec::new(),
-            in_bodies: None,
         };
         for (i, bearing) in assembly.bearings.iter().enumerate() {
             let fail = AssemblyError::of_bearing(&bearing.name);
@@ -95,32 +92,26 @@ impl LinearAssembly {
         if bodies.is_empty() {
             return Ok(());
         }
-        let (mut of_shaft, mut of_balls) = (Vec::new(), Vec::new());
+        let mut of_shaft: Vec<Option<SeatStiffness>> = Vec::new();
         for (i, bearing) in assembly.bearings.iter().enumerate() {
             let around = bodies.iter().filter(|body| body.bearings().contains(&i));
             let sides: Vec<Side> = around.map(SharedBody::side).collect();
             if sides.is_empty() {
                 of_shaft.push(None);
-                of_balls.push(None);
                 continue;
             }
             let fail = AssemblyError::of_bearing(&bearing.name);
             let factors = solver.of_bearing(i);
             let seats = MovedSeats::new(&sides, factors, &solution.bearings[i], &self.bearings[i]);
             of_shaft.push(Some(seats.of_shaft().map_err(fail)?));
-            of_balls.push(Some(seats.of_shaft_and_balls().map_err(fail)?));
         }
-        let together = |own: &[Option<SeatStiffness>]| -> Result<InBodies, AssemblyError> {
-            let stiffness = coupled(bodies, own).map_err(|source| AssemblyError::Matrix { source })?;
-            let mut starts = vec![0];
-            for own in own {
-                let n = own.as_ref().map_or(0, |own| own.n_kept);
-                starts.push(starts[starts.len() - 1] + n);
-            }
-            Ok(InBodies { starts, stiffness })
-        };
-        self.take_blocks(assembly, bodies, &together(&of_shaft)?);
-        self.in_bodies = Some(together(&of_balls)?);
+        let stiffness = coupled(bodies, &of_shaft).map_err(|source| AssemblyError::Matrix { source })?;
+        let mut starts = vec![0];
+        for own in &of_shaft {
+            let n = own.as_ref().map_or(0, |own| own.n_kept);
+            starts.push(starts[starts.len() - 1] + n);
+        }
+        self.take_blocks(assembly, bodies, &InBodies { starts, stiffness });
         Ok(())
     }
 

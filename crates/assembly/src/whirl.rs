@@ -5,17 +5,191 @@
 //! ```
 //!
 //! As [`dynamics::whirl`] for one bearing: M has the shaft, the inner rings as rigid bodies at their places, and the
-//! balls; G is the gyroscopic matrix of all that turns, W the speed. What that leaves out is left out here too. Bodies
-//! that carry several bearings couple them by their stiffness at rest; one on the shaft turns as a rigid one.
+//! balls; G is the gyroscopic matrix of all that turns, W the speed. What that leaves out is left out here too. Elastic
+//! bodies under the rings, on the shaft or in a housing, have rows of their own ([`crate::whirl_in_bodies`]).
 
+use contact::Side;
 use dynamics::bodies::AXES;
-use dynamics::stiffness::N_SHAFT;
-use dynamics::whirl::{ShaftRow, TurningShaft, WhirlMatrices, is_held, turning_inertia};
+use dynamics::stiffness::{N_SHAFT, ShaftMatrix};
+use dynamics::whirl::{
+    ShaftRow, TurningShaft, WhirlMatrices, is_held, ring_inertia, shaft_inertia, turning_inertia,
+};
+use dynamics::{Linearisation, Model, ShaftDof, StaticSolution, StaticSolver};
+use ring::rigid::RigidInertia;
 
-use crate::assembly::Assembly;
+use crate::assembly::{Assembly, AssemblySolution, AssemblySolver};
 use crate::error::AssemblyError;
-use crate::shaft::{ShaftBody, product};
-use crate::stiffness::{InBodies, LinearAssembly};
+use crate::place::MountedBearing;
+use crate::shaft::{ShaftBody, Station, identity, product};
+use crate::stiffness::LinearAssembly;
+use crate::whirl_bodies::{WhirlBody, whirl_bodies};
+use crate::whirl_in_bodies::equations_in_bodies;
+use crate::whirl_rows::{WhirlBearing, WhirlShaft};
+
+/// What turns with a shaft and what yields round it, made ready for all speeds.
+pub struct TurningAssembly {
+    /// The shaft: with all inner rings where no elastic body is under one, else with rigid ones alone.
+    shaft: ShaftBody,
+    /// Elastic bodies that have a mass.
+    bodies: Vec<WhirlBody>,
+    /// Flexible inner rings in no such body, where there are bodies.
+    rings: Vec<Option<RigidInertia>>,
+}
+
+impl TurningAssembly {
+    /// Of an assembly.
+    pub fn new(assembly: &Assembly) -> Result<TurningAssembly, AssemblyError> {
+        let bearings: Vec<_> = assembly
+            .bearings
+            .iter()
+            .map(|b| (b.name.as_str(), &b.model))
+            .collect();
+        let bodies = whirl_bodies(&bearings)?;
+        if bodies.is_empty() {
+            return Ok(TurningAssembly {
+                shaft: turning_shaft(assembly)?,
+                bodies,
+                rings: Vec::new(),
+            });
+        }
+        let mut shaft = assembly.shaft.clone();
+        for (bearing, mount) in assembly.bearings.iter().zip(assembly.mounts()) {
+            shaft.add_inertia(&mount.station, &shaft_inertia(&bearing.model));
+        }
+        let rings = assembly.bearings.iter().enumerate();
+        let rings = rings.map(|(i, b)| ring_on_shaft(&bodies, i, &b.name, &b.model));
+        Ok(TurningAssembly {
+            shaft,
+            rings: rings.collect::<Result<_, _>>()?,
+            bodies,
+        })
+    }
+
+    /// Of one bearing alone, which has a rigid shaft; None where it has no elastic body with a mass.
+    pub fn of_one(name: &str, model: &Model) -> Result<Option<TurningAssembly>, AssemblyError> {
+        let bodies = whirl_bodies(&[(name, model)])?;
+        if bodies.is_empty() {
+            return Ok(None);
+        }
+        let held = model
+            .shaft
+            .map(|dof| if dof == ShaftDof::Free { None } else { Some(0.0) });
+        Ok(Some(TurningAssembly {
+            shaft: ShaftBody::rigid(shaft_inertia(model), held),
+            rings: vec![ring_on_shaft(&bodies, 0, name, model)?],
+            bodies,
+        }))
+    }
+
+    /// Whether bodies swing, so that there are more modes than those of the shaft.
+    pub fn has_bodies(&self) -> bool {
+        !self.bodies.is_empty()
+    }
+
+    /// The equations of linearised bearings at a speed, rad/s.
+    pub fn equations(
+        &self,
+        (assembly, solver): (&Assembly, &AssemblySolver),
+        (solution, linear): (&AssemblySolution, &LinearAssembly),
+        speed: f64,
+    ) -> Result<TurningShaft, AssemblyError> {
+        if self.bodies.is_empty() {
+            return equations(assembly, &self.shaft, linear, speed);
+        }
+        let mounts = assembly.mounts();
+        let bearing = |b: usize| {
+            let of: &MountedBearing = &assembly.bearings[b];
+            WhirlBearing {
+                model: &of.model,
+                solver: solver.of_bearing(b),
+                solution: &solution.bearings[b],
+                linear: &linear.bearings[b],
+                motion: own_motion(of, &mounts[b].station),
+                first: mounts[b].station.first,
+                way: of.place.orientation.turned_angle(1.0),
+                ring: self.rings[b],
+            }
+        };
+        let bearings: Vec<_> = (0..assembly.bearings.len()).map(bearing).collect();
+        self.in_bodies(of_shaft(&self.shaft, self.shaft.n(), speed), &bearings, speed)
+    }
+
+    /// The equations of one linearised bearing alone at a speed, rad/s.
+    pub fn equations_of_one(
+        &self,
+        model: &Model,
+        (solver, solution): (&StaticSolver, &StaticSolution),
+        linear: &Linearisation,
+        speed: f64,
+    ) -> Result<TurningShaft, AssemblyError> {
+        let mut shaft = of_shaft(&self.shaft, N_SHAFT, speed);
+        let loads = linear.load_stiffness.as_flattened();
+        shaft
+            .stiffness
+            .iter_mut()
+            .zip(loads)
+            .for_each(|(sum, k)| *sum += k);
+        let bearing = WhirlBearing {
+            model,
+            solver,
+            solution,
+            linear,
+            motion: identity(),
+            first: 0,
+            way: 1.0,
+            ring: self.rings[0],
+        };
+        self.in_bodies(shaft, &[bearing], speed)
+    }
+
+    fn in_bodies(
+        &self,
+        matrices: WhirlMatrices,
+        bearings: &[WhirlBearing<'_>],
+        speed: f64,
+    ) -> Result<TurningShaft, AssemblyError> {
+        let shaft = WhirlShaft {
+            free: self
+                .shaft
+                .held
+                .iter()
+                .enumerate()
+                .filter(|(_, held)| held.is_none())
+                .map(|(i, _)| i)
+                .collect(),
+            matrices,
+            speed,
+        };
+        let found = equations_in_bodies(&shaft, bearings, &self.bodies)?;
+        let lacking = found.without_mass();
+        lacking.map_or(Ok(found), |row| Err(no_inertia(row.dof)))
+    }
+}
+
+/// Inertia of a flexible inner ring that sits in none of these bodies.
+fn ring_on_shaft(
+    bodies: &[WhirlBody],
+    bearing: usize,
+    name: &str,
+    model: &Model,
+) -> Result<Option<RigidInertia>, AssemblyError> {
+    let [inner, _] = Side::BOTH;
+    let mut seats = bodies.iter().flat_map(|body| &body.seats);
+    if seats.any(|seat| seat.bearing == bearing && seat.side == inner) {
+        return Ok(None);
+    }
+    ring_inertia(model, inner).map_err(AssemblyError::of_bearing(name))
+}
+
+/// Motion of the place of a bearing, in its own frame, by five dofs of the shaft.
+fn own_motion(bearing: &MountedBearing, station: &Station) -> ShaftMatrix {
+    let turn: ShaftMatrix = std::array::from_fn(|i| {
+        let mut row = [0.0; N_SHAFT];
+        row[i] = 1.0;
+        bearing.place.orientation.turned(row)
+    });
+    product(&turn, &station.motion)
+}
 
 /// The shaft with the inner rings that turn with it.
 pub fn turning_shaft(assembly: &Assembly) -> Result<ShaftBody, AssemblyError> {
@@ -45,31 +219,17 @@ pub fn equations(
     require_inertia(&all, &free)?;
     let mut rows = free.clone();
     let mut first = n_shaft;
-    let mut places = Vec::new();
-    let is_in_bodies = |b: usize| {
-        linear
-            .in_bodies
-            .as_ref()
-            .is_some_and(|all| all.starts[b] < all.starts[b + 1])
-    };
     for (b, (bearing, mount)) in assembly.bearings.iter().zip(assembly.mounts()).enumerate() {
         let fail = AssemblyError::of_bearing(&bearing.name);
         let own = linear.bearings[b].of_shaft_and_balls().map_err(fail)?;
-        let turn: [[f64; N_SHAFT]; N_SHAFT] = std::array::from_fn(|i| {
-            let mut row = [0.0; N_SHAFT];
-            row[i] = 1.0;
-            bearing.place.orientation.turned(row)
-        });
         let at = BearingRows {
-            motion: product(&turn, &mount.station.motion),
+            motion: own_motion(bearing, &mount.station),
             shaft: mount.station.first,
             balls: first,
         };
-        if !is_in_bodies(b) {
-            at.add(&at, (own.n, &own.stiffness), n, &mut all.stiffness);
-        }
+        at.add((own.n, &own.stiffness), n, &mut all.stiffness);
         if let Some(damping) = &own.damping {
-            at.add(&at, (own.n, damping), n, &mut all.rates);
+            at.add((own.n, damping), n, &mut all.rates);
         }
         for i in 0..balls(b) {
             all.mass[(n + 1) * (first + i)] = bearing.model.ball_mass();
@@ -78,10 +238,6 @@ pub fn equations(
             }
         }
         first += balls(b);
-        places.push(at);
-    }
-    if let Some(bodies) = &linear.in_bodies {
-        add_bodies(bodies, &places, n, &mut all.stiffness);
     }
     let row = |&i: &usize| ShaftRow {
         node: i / N_SHAFT,
@@ -108,23 +264,6 @@ fn of_shaft(shaft: &ShaftBody, n: usize, speed: f64) -> WhirlMatrices {
     }
 }
 
-/// Adds the stiffness of bearings that share bodies to one of `n` rows.
-fn add_bodies(bodies: &InBodies, places: &[BearingRows], n: usize, to: &mut [f64]) {
-    let InBodies { starts, stiffness } = bodies;
-    let n_coupled = starts[places.len()];
-    for (loaded, at) in places.iter().enumerate() {
-        for (moved, from) in places.iter().enumerate() {
-            let columns = starts[moved]..starts[moved + 1];
-            let rows = stiffness
-                .chunks_exact(n_coupled)
-                .take(starts[loaded + 1])
-                .skip(starts[loaded]);
-            let block: Vec<f64> = rows.flat_map(|row| &row[columns.clone()]).copied().collect();
-            at.add(from, (columns.len(), &block), n, to);
-        }
-    }
-}
-
 /// Where the dofs of a bearing are among all rows: its axis point moves by `motion` times five dofs of the shaft.
 struct BearingRows {
     motion: [[f64; N_SHAFT]; N_SHAFT],
@@ -133,13 +272,9 @@ struct BearingRows {
 }
 
 impl BearingRows {
-    /// Adds a matrix of `m` columns, over the loads on this bearing's axis point and balls by motions of another's, to
-    /// one of `n` rows.
-    fn add(&self, moved: &BearingRows, (m, own): (usize, &[f64]), n: usize, to: &mut [f64]) {
-        if m == 0 {
-            return;
-        }
-        let columns: Vec<_> = (0..m).map(|j| moved.spread(j)).collect();
+    /// Adds a matrix of `m` columns over the bearing's axis point and balls to one of `n` rows.
+    fn add(&self, (m, own): (usize, &[f64]), n: usize, to: &mut [f64]) {
+        let columns: Vec<_> = (0..m).map(|j| self.spread(j)).collect();
         for (i, row) in own.chunks_exact(m).enumerate() {
             for (row_of, a) in self.spread(i) {
                 for (entry, columns) in row.iter().zip(&columns) {
@@ -164,15 +299,16 @@ impl BearingRows {
 
 fn require_inertia(all: &WhirlMatrices, free: &[usize]) -> Result<(), AssemblyError> {
     let lacking = free.iter().find(|&&i| all.mass[(all.n + 1) * i] <= 0.0);
-    lacking.map_or(Ok(()), |&i| {
-        let dof = i % N_SHAFT;
-        Err(AssemblyError::NoInertia {
-            dof: AXES[dof],
-            key: if dof < 3 {
-                "shaft.mass"
-            } else {
-                "shaft.transverse_inertia"
-            },
-        })
-    })
+    lacking.map_or(Ok(()), |&i| Err(no_inertia(i % N_SHAFT)))
+}
+
+fn no_inertia(dof: usize) -> AssemblyError {
+    AssemblyError::NoInertia {
+        dof: AXES[dof],
+        key: if dof < 3 {
+            "shaft.mass"
+        } else {
+            "shaft.transverse_inertia"
+        },
+    }
 }

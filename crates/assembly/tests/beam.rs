@@ -165,7 +165,6 @@ fn modes(shaft: ShaftBody, speed: f64) -> Vec<WhirlMode> {
         stiffness: Vec::new(),
         damping: Vec::new(),
         couplings: Vec::new(),
-        in_bodies: None,
     };
     equations(&assembly, &turning, &linear, speed)
         .unwrap()

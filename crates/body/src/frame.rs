@@ -45,6 +45,15 @@ impl FrameForms {
         load
     }
 
+    /// G and P of the first `n` oscillators, row-major.
+    pub fn of_first(&self, n: usize) -> [Vec<f64>; 2] {
+        let all = self.across.len().isqrt();
+        [&self.across, &self.radial].map(|by_columns| {
+            let entry = |k: usize| by_columns[all * (k % n) + k / n];
+            (0..n * n).map(entry).collect()
+        })
+    }
+
     /// Velocities in the frame of oscillators that stand still in space.
     pub fn standing(&self, speed: f64, x: &[f64]) -> Vec<f64> {
         let turned: Vec<f64> = x.iter().map(|x| -speed * x).collect();

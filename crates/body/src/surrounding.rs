@@ -151,6 +151,11 @@ impl Surrounding {
         Ok(body)
     }
 
+    /// Whether it has a mass: one from matrices may come without.
+    pub fn has_mass(&self) -> bool {
+        self.mesh.is_some() || self.matrices.is_some()
+    }
+
     /// K and M of the free dofs; None of a body without a mass.
     pub(crate) fn matrices(&self) -> Result<Option<Cow<'_, [CsMat<f64>; 2]>>, SurroundingError> {
         let Some((mesh, material)) = &self.mesh else {

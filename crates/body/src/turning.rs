@@ -56,6 +56,35 @@ impl Surrounding {
         forms.remove_round_off(n);
         Ok(forms)
     }
+
+    /// The gyroscopic matrix of 1 rad/s about z, in space, of the first `n` oscillators of a body of revolution: 2 U^T
+    /// S U with [`fem::assemble_azimuthal_mass`], `[n][n]` flat, over their velocities by rows.
+    ///
+    /// Beside it the acceleration of what moves through a place has W^2 d2u/dtheta2, and the spin stresses the body,
+    /// which stiffens it by W^2. Where sections stay plane both cancel, as the section's own centrifugal forces hold
+    /// it; both are left out. What that leaves is (W/omega)^2 of modes that deform sections.
+    pub fn gyroscopic(&self, modes: &BodyModes, n: usize) -> Result<Vec<f64>, SurroundingError> {
+        let Some((mesh, material)) = &self.mesh else {
+            return Ok(vec![0.0; n * n]);
+        };
+        let azimuthal =
+            fem::assemble_azimuthal_mass(mesh, material).map_err(|source| SurroundingError::Fem {
+                body: self.name.clone(),
+                source,
+            })?;
+        let field = |i: usize| {
+            let mut unit = vec![0.0; modes.n()];
+            unit[i] = 1.0;
+            self.moved(modes, &unit)
+        };
+        let fields = (0..n).into_par_iter().map(field).collect::<Vec<_>>().concat();
+        let moved = solver::products(&azimuthal, &fields, n);
+        let columns = inner_products(self.n_dofs, &fields, n, &moved, n);
+        // Skew to the last bit, so that it does no work.
+        let entry = |i: usize, j: usize| columns[n * j + i] - columns[n * i + j];
+        Ok((0..n * n).map(|k| entry(k / n, k % n)).collect())
+    }
+
     /// Displacements of all dofs of a block of oscillators, `[block][n_dofs]` flat.
     fn fields_of_oscillators(&self, block: &[usize], modes: &BodyModes, columns: &[f64]) -> Vec<f64> {
         let (rows, n_dofs) = (self.free.len(), self.n_dofs);

@@ -69,6 +69,16 @@ impl Condensation {
         }
         condensed
     }
+
+    /// What rows over all unknowns are over those that are kept when the rest follow, row-major.
+    pub fn followed(&self, rows: &[f64]) -> Vec<f64> {
+        let rest = self.n - self.kept;
+        let entry = |row: &[f64], j: usize| {
+            row[j] + product(&row[self.kept..], &self.follow[rest * j..rest * (j + 1)])
+        };
+        let of_row = |row: &[f64]| (0..self.kept).map(|j| entry(row, j)).collect::<Vec<f64>>();
+        rows.chunks_exact(self.n).flat_map(of_row).collect()
+    }
 }
 
 /// K_c of a matrix of `n` rows, row-major, on its first N, by one factorisation. `blocks` of the rest, counted from its

@@ -33,7 +33,7 @@ pub mod whirl;
 // What they share.
 pub mod balls;
 mod compliance;
-mod condensation;
+pub mod condensation;
 pub mod costs;
 pub mod error;
 pub mod footprint;

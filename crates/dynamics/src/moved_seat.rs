@@ -43,6 +43,22 @@ pub struct SeatStiffness {
     matrix: Vec<f64>,
 }
 
+/// A bearing with its moved seats, before anything is condensed out.
+pub struct SeatMatrices {
+    /// Rows of shaft and balls, which come first.
+    pub n_kept: usize,
+    /// Rows of all that the bearing has of its own: then come those of the functions of its seats.
+    pub n_own: usize,
+    /// Numbers of the functions of the seats of both rings among all functions, inner first.
+    pub functions: [Option<Range<usize>>; 2],
+    /// Loads by motions, row-major over `n_own` and the functions; those of functions are -p, on the ring.
+    pub stiffness: Vec<f64>,
+    /// The same by velocities, if there is damping: of contacts, and of rings in proportion to their stiffness.
+    pub damping: Option<Vec<f64>>,
+    /// Damping of the rings over their stiffness, s.
+    pub ring_damping: f64,
+}
+
 /// The seat of a ring in a body that others move.
 struct MovedSeat<'l> {
     ports: &'l RingPorts,
@@ -97,9 +113,29 @@ impl<'l> MovedSeats<'l> {
         self.condensed(N_SHAFT)
     }
 
-    /// H over shaft and balls.
-    pub fn of_shaft_and_balls(&self) -> Result<SeatStiffness, DynamicsError> {
-        self.condensed(N_SHAFT + 2 * self.linear.n_balls)
+    /// All rows.
+    pub fn matrices(&self) -> SeatMatrices {
+        let (own, n) = (self.linear.n, self.linear.n + self.n_functions);
+        let spread = |matrix: &[f64], factor: f64| {
+            let mut whole = vec![0.0; n * n];
+            for seat in &self.seats {
+                seat.add(n, own + seat.first, |unknown| unknown, &mut whole);
+            }
+            whole.iter_mut().for_each(|entry| *entry *= factor);
+            for (row, to) in matrix.chunks_exact(own).zip(whole.chunks_exact_mut(n)) {
+                to[..own].copy_from_slice(row);
+            }
+            whole
+        };
+        let ring_damping = self.linear.ring_damping;
+        SeatMatrices {
+            n_kept: N_SHAFT + 2 * self.linear.n_balls,
+            n_own: own,
+            functions: self.functions.clone(),
+            stiffness: spread(&self.linear.stiffness, 1.0),
+            damping: self.linear.damping.as_ref().map(|c| spread(c, ring_damping)),
+            ring_damping,
+        }
     }
 
     /// H over the first rows of the bearing.

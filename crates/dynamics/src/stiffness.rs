@@ -72,7 +72,9 @@ pub struct Linearisation {
     pub(crate) n: usize,
     /// Over shaft, balls, seat and ports of the rings, row-major.
     pub(crate) stiffness: Vec<f64>,
-    damping: Option<Vec<f64>>,
+    pub(crate) damping: Option<Vec<f64>>,
+    /// Damping of the rings over their stiffness, s.
+    pub(crate) ring_damping: f64,
     pub(crate) n_balls: usize,
     /// Where rings meet their contacts, by side; only of one that was found anew.
     pub(crate) ports: [Option<RingPorts>; 2],
@@ -146,6 +148,7 @@ impl Linearisation {
             n,
             stiffness,
             damping,
+            ring_damping: laws.rings.map_or(0.0, |rings| rings.stiffness),
             n_balls: parts.balls.len(),
             ports: [None, None],
             load_stiffness: load_stiffness(parts, &solution.displacements.shaft),

@@ -75,8 +75,10 @@ pub struct WhirlMode {
     pub whirl: Whirl,
     /// From -1, a circle against the spin, to 1, one along it.
     pub roundness: f64,
-    /// Share of the shaft in the kinetic energy.
+    /// Share of the shaft in the kinetic energy, with bodies and rings on it.
     pub shaft_share: f64,
+    /// The same of what stands and yields, such as housings with their rings.
+    pub standing_share: f64,
 }
 
 /// Rigid inertia of the shaft of a bearing and of a rigid ring on it.
@@ -89,23 +91,30 @@ pub fn shaft_inertia(model: &Model) -> RigidInertia {
     }
 }
 
+/// Rigid inertia of a flexible ring about its place; None of a rigid one.
+pub fn ring_inertia(model: &Model, side: Side) -> Result<Option<RigidInertia>, DynamicsError> {
+    let Some(ring) = model.ring(side) else {
+        return Ok(None);
+    };
+    let settings = BodySettings {
+        partner: partner(model, side),
+        damping: [0.0; 2],
+        backend: model.backend,
+        frame: Frame::Still,
+    };
+    // Of a body in which it sits nothing is asked for.
+    let own = match ring.tie {
+        Some(_) => elastic_body(side.name(), &ring.untied(), settings)?,
+        None => elastic_body(side.name(), ring, settings)?,
+    };
+    Ok(Some(own.rigid_inertia()))
+}
+
 /// Rigid inertia of all that turns with the shaft: of the shaft, a rigid ring on it, and a flexible inner ring.
 pub fn turning_inertia(model: &Model) -> Result<RigidInertia, DynamicsError> {
     let mut sum = shaft_inertia(model);
-    let side = Side::Inner;
-    if let Some(ring) = model.ring(side) {
-        let settings = BodySettings {
-            partner: partner(model, side),
-            damping: [0.0; 2],
-            backend: model.backend,
-            frame: Frame::Still,
-        };
-        // Of a body on the shaft only the inertia is asked for, not the modes.
-        let own = match ring.tie {
-            Some(_) => elastic_body(side.name(), &ring.untied(), settings)?,
-            None => elastic_body(side.name(), ring, settings)?,
-        };
-        sum = sum.with(own.rigid_inertia());
+    if let Some(ring) = ring_inertia(model, Side::Inner)? {
+        sum = sum.with(ring);
         if let Some(carried) = model.carried_inertia() {
             sum = sum.with(carried);
         }
@@ -122,7 +131,49 @@ pub struct TurningShaft {
     stiffness: Vec<f64>,
     /// The first rows: free dofs of the shaft.
     shaft: Vec<ShaftRow>,
+    /// What moves with the shaft beyond its rows; None where its rows are all.
+    forms: Option<ShaftForms>,
     speed: f64,
+}
+
+/// Forms over all rows of a shaft that is more than its own rows, row-major.
+pub struct ShaftForms {
+    /// Mass of all that moves with the shaft.
+    pub mass: Vec<f64>,
+    /// Mass of its motion along z as a whole.
+    pub axial: Vec<f64>,
+    /// Mass of its motion across z, and of tilts.
+    pub radial: Vec<f64>,
+    /// The same between a motion and another that is turned by 90 deg about z, from x to y.
+    pub across: Vec<f64>,
+    /// Mass of what stands and yields.
+    pub standing: Vec<f64>,
+}
+
+impl ShaftForms {
+    /// Those of the given rows of `n` alone.
+    pub fn of_rows(&self, n: usize, rows: &[usize]) -> ShaftForms {
+        ShaftForms {
+            mass: of_rows(n, &self.mass, rows),
+            axial: of_rows(n, &self.axial, rows),
+            radial: of_rows(n, &self.radial, rows),
+            across: of_rows(n, &self.across, rows),
+            standing: of_rows(n, &self.standing, rows),
+        }
+    }
+}
+
+/// Rows and columns of a matrix of `n` rows.
+fn of_rows(n: usize, matrix: &[f64], rows: &[usize]) -> Vec<f64> {
+    let row = |i: &usize| rows.iter().map(|j| matrix[n * i + j]).collect::<Vec<_>>();
+    rows.iter().flat_map(row).collect()
+}
+
+/// x^T A y.
+fn form(matrix: &[f64], x: &[f64], y: &[f64]) -> f64 {
+    let rows = matrix.chunks_exact(y.len().max(1)).zip(x);
+    rows.map(|(row, x)| x * row.iter().zip(y).map(|(a, y)| a * y).sum::<f64>())
+        .sum()
 }
 
 /// A row of the shaft.
@@ -149,10 +200,7 @@ pub struct WhirlMatrices {
 impl WhirlMatrices {
     /// The matrices of the given rows alone; all others are held.
     pub fn of_rows(&self, rows: &[usize]) -> WhirlMatrices {
-        let pick = |matrix: &[f64]| -> Vec<f64> {
-            let row = |i: &usize| rows.iter().map(|j| matrix[self.n * i + j]).collect::<Vec<_>>();
-            rows.iter().flat_map(row).collect()
-        };
+        let pick = |matrix: &[f64]| of_rows(self.n, matrix, rows);
         WhirlMatrices {
             n: rows.len(),
             mass: pick(&self.mass),
@@ -215,8 +263,24 @@ impl TurningShaft {
             rates: matrices.rates,
             stiffness: matrices.stiffness,
             shaft,
+            forms: None,
             speed,
         }
+    }
+
+    /// The same with what moves with the shaft beyond its rows.
+    pub fn with_forms(self, forms: ShaftForms) -> TurningShaft {
+        TurningShaft {
+            forms: Some(forms),
+            ..self
+        }
+    }
+
+    /// A free dof of the shaft without mass.
+    pub fn without_mass(&self) -> Option<ShaftRow> {
+        let rows = self.shaft.iter().enumerate();
+        let mut lacking = rows.filter(|(i, _)| self.mass[(self.n + 1) * i] <= 0.0);
+        lacking.next().map(|(_, row)| *row)
     }
 
     /// The modes, from the lowest frequency. They are the pairs of the inverse of the equations of first order, in
@@ -271,10 +335,21 @@ impl TurningShaft {
         let [re, im] = pair
             .value
             .map(|part| slowest * part / square.max(f64::MIN_POSITIVE));
-        let of_shaft = energy(0..self.shaft.len());
-        let roundness = self.roundness(&x);
-        let axial = (0..self.shaft.len()).filter(|&i| self.shaft[i].dof == 2);
-        let axial: f64 = axial.map(|i| energy(i..i + 1)).sum();
+        let parts = [0, 1].map(|part| x.iter().map(|x| x[part]).collect::<Vec<f64>>());
+        let of = |matrix: &[f64]| parts.iter().map(|x| form(matrix, x, x)).sum::<f64>();
+        let (of_shaft, axial, standing, roundness) = match &self.forms {
+            Some(forms) => {
+                let around = 2.0 * form(&forms.across, &parts[0], &parts[1]);
+                let roundness = self.along(around, of(&forms.radial));
+                (of(&forms.mass), of(&forms.axial), of(&forms.standing), roundness)
+            }
+            None => {
+                let axial = (0..self.shaft.len()).filter(|&i| self.shaft[i].dof == 2);
+                let axial: f64 = axial.map(|i| energy(i..i + 1)).sum();
+                (energy(0..self.shaft.len()), axial, 0.0, self.roundness(&x))
+            }
+        };
+        let all = energy(0..n).max(f64::MIN_POSITIVE);
         WhirlMode {
             frequency: im / std::f64::consts::TAU,
             damping_ratio: 0.0 - re / re.hypot(im).max(f64::MIN_POSITIVE),
@@ -285,11 +360,12 @@ impl TurningShaft {
                 _ => Whirl::Planar,
             },
             roundness,
-            shaft_share: of_shaft / energy(0..n).max(f64::MIN_POSITIVE),
+            shaft_share: of_shaft / all,
+            standing_share: standing / all,
         }
     }
 
-    /// Energy that goes round along the spin less that against it, over their sum; 0 without a spin.
+    /// The roundness by the rows of the shaft.
     fn roundness(&self, x: &[ComplexNumber]) -> f64 {
         let (mut along, mut against) = (0.0, 0.0);
         for [first, second] in [[0, 1], [3, 4]] {
@@ -305,10 +381,15 @@ impl TurningShaft {
                 against += mass * ((a + d).powi(2) + (b - c).powi(2));
             }
         }
-        if self.speed == 0.0 || along + against == 0.0 {
+        self.along(along - against, along + against)
+    }
+
+    /// Energy that goes round along the spin less that against it, from x to y, over their sum; 0 without a spin.
+    fn along(&self, difference: f64, sum: f64) -> f64 {
+        if self.speed == 0.0 || sum == 0.0 {
             return 0.0;
         }
-        self.speed.signum() * (along - against) / (along + against)
+        self.speed.signum() * difference / sum
     }
 }
 

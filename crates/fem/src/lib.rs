@@ -38,7 +38,7 @@ mod table;
 pub use error::FemError;
 pub use geometry::check_elements;
 pub use loads::{body_load, centrifugal_load};
-pub use mass::{assemble_mass, assemble_mass_into, assemble_node_mass};
+pub use mass::{assemble_azimuthal_mass, assemble_mass, assemble_mass_into, assemble_node_mass};
 pub use material::Material;
 pub use pattern::Pattern;
 pub use rigid::{Inertia, inertia, rigid_modes, volume};

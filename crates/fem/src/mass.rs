@@ -7,7 +7,7 @@ use sprs::CsMat;
 
 use crate::chunks::for_each_element;
 use crate::error::FemError;
-use crate::geometry::{checked_map, coordinates};
+use crate::geometry::{checked_map, coordinates, physical, position};
 use crate::material::Material;
 use crate::pattern::Pattern;
 use crate::quadrature;
@@ -51,6 +51,30 @@ pub fn assemble_node_mass(
     material: &Material,
 ) -> Result<CsMat<f64>, FemError> {
     Ok(pattern.node_matrix(node_mass(pattern, mesh, material)?))
+}
+
+/// The mass between displacements and the growth of others with the azimuth about z, kg, `[3 n_nodes][3 n_nodes]`, CSR:
+///
+/// ```text
+/// S_ab = integral of rho N_a (x dN_b/dy - y dN_b/dx),   times the identity of the Cartesian components
+/// ```
+///
+/// What of a body of revolution moves through a place while it turns with W about z has the acceleration
+/// u'' + 2 W du'/dtheta + ... there, so 2 W S is its gyroscopic matrix in space. Skew-symmetric: what a surface that is
+/// not one of revolution adds to that is left out.
+pub fn assemble_azimuthal_mass(mesh: &Mesh, material: &Material) -> Result<CsMat<f64>, FemError> {
+    let pattern = Pattern::new(mesh)?;
+    material.validate()?;
+    let kernel = NodeMass::new(mesh.kind, material);
+    let n = mesh.kind.n_nodes();
+    let compute = |e: usize, matrix: &mut [f64]| kernel.azimuthal(mesh, e, matrix);
+    let mut scalars = vec![0.0; pattern.n_pairs()];
+    for_each_element(mesh.n_elements(), n * n, compute, |e, matrix| {
+        pattern.add_scalars(e, mesh.element(e), matrix, &mut scalars);
+    })?;
+    let mut values = vec![0.0; pattern.n_values()];
+    pattern.spread(&scalars, &mut values);
+    Ok(pattern.matrix(values))
 }
 
 /// Values of the mass between nodes, kg, one per pair of neighbours.
@@ -103,6 +127,33 @@ impl NodeMass {
         for a in 0..n {
             for b in 0..a {
                 matrix[a * n + b] = matrix[b * n + a];
+            }
+        }
+        Ok(())
+    }
+
+    /// Overwrites `matrix` with the skew part of the mass of element `e` between its functions and their growth with
+    /// the azimuth, kg, `[n][n]`.
+    fn azimuthal(&self, mesh: &Mesh, e: usize, matrix: &mut [f64]) -> Result<(), FemError> {
+        let n = mesh.kind.n_nodes();
+        let nodes = coordinates(mesh, e);
+        matrix.fill(0.0);
+        for q in 0..self.table.n_points() {
+            let map = checked_map(&self.table, q, &nodes, e)?;
+            let [x, y, _] = position(&self.table, q, &nodes);
+            let weight = 0.5 * self.density * self.table.weights[q] * map.det;
+            let (values, reference) = (&self.table.values[q], &self.table.gradients[q]);
+            let growth = |b: usize| {
+                let [along_x, along_y, _] = physical(&map.inverse, [0, 1, 2].map(|i| reference[i][b]));
+                x * along_y - y * along_x
+            };
+            let growths: Vec<f64> = (0..n).map(growth).collect();
+            for a in 0..n {
+                for b in 0..a {
+                    let entry = weight * (values[a] * growths[b] - values[b] * growths[a]);
+                    matrix[a * n + b] += entry;
+                    matrix[b * n + a] -= entry;
+                }
             }
         }
         Ok(())

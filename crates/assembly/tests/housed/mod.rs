@@ -1,9 +1,10 @@
-//! Two bearings in one elastic sleeve, at rest and in motion: against two sleeves, the sleeve's own balance, the order
-//! of the list, ledgers.
+//! Two bearings in one elastic sleeve, at rest, over the speed and in motion: against two sleeves, the sleeve's
+//! own balance, the order of the list, ledgers.
 
 mod modes;
 mod shaft;
 mod stiffness;
+mod whirl;
 
 use std::collections::BTreeMap;
 use std::sync::Arc;

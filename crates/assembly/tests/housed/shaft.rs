@@ -23,8 +23,12 @@ fn apart(ring: &RingModel, space: &SeatSpace) -> f64 {
 }
 
 fn carried(mesh: Mesh, space: SeatSpace, seats: &[(&str, bool)]) -> Arc<Surrounding> {
+    carried_of(207e9, mesh, space, seats)
+}
+
+fn carried_of(young: f64, mesh: Mesh, space: SeatSpace, seats: &[(&str, bool)]) -> Arc<Surrounding> {
     let origins = vec![inner().groove.centre_z; seats.len()];
-    Arc::new(standing(mesh, space, seats, 207e9).on_shaft(&origins).unwrap())
+    Arc::new(standing(mesh, space, seats, young).on_shaft(&origins).unwrap())
 }
 
 fn hollow(space: &SeatSpace, is_joined: bool, wall: Wall) -> Mesh {
@@ -36,8 +40,14 @@ fn hollow(space: &SeatSpace, is_joined: bool, wall: Wall) -> Mesh {
 }
 
 pub fn on_one(is_joined: bool, wall: Wall) -> [Arc<SeatTie>; 2] {
+    on_one_of(207e9, is_joined, wall)
+}
+
+/// The same of another stiffness.
+pub fn on_one_of(young: f64, is_joined: bool, wall: Wall) -> [Arc<SeatTie>; 2] {
     let space = space(&inner());
-    let body = carried(
+    let body = carried_of(
+        young,
         hollow(&space, is_joined, wall),
         space,
         &[("seat_front", false), ("seat_rear", true)],

@@ -1,7 +1,7 @@
 //! Bearings in one body to first order, against differences of equilibria.
 
 use assembly::stiffness::LinearAssembly;
-use assembly::whirl::{equations, turning_shaft};
+use assembly::whirl::TurningAssembly;
 use dynamics::DampingLaws;
 use ring::rigid::RigidInertia;
 
@@ -67,7 +67,7 @@ fn the_stiffness_on_one_elastic_shaft_is_that_of_differences() {
 }
 
 /// The pair in one sleeve and on one shaft, both elastic.
-fn in_and_on(housing: [Arc<SeatTie>; 2], shaft: [Arc<SeatTie>; 2]) -> Assembly {
+pub fn in_and_on(housing: [Arc<SeatTie>; 2], shaft: [Arc<SeatTie>; 2]) -> Assembly {
     let mut list = tied_pair(Side::Outer, housing, [0, 1]);
     let on_shaft = tied_pair(Side::Inner, shaft, [0, 1]);
     for (bearing, other) in list.bearings.iter_mut().zip(on_shaft.bearings) {
@@ -102,13 +102,13 @@ fn to_first_order_bodies_in_two_parts_are_four() {
 /// Frequencies over the speed, Hz, of a pair whose shaft has an inertia besides.
 fn over_speed(mut list: Assembly, heavy: &RigidInertia, speed: f64) -> (Vec<f64>, [[f64; 5]; 5]) {
     list.shaft = ShaftBody::rigid(*heavy, [None; 5]);
-    let (list, _, _, linear) = of_list(list);
-    let turning = turning_shaft(&list).unwrap();
-    let modes = equations(&list, &turning, &linear, speed)
-        .unwrap()
-        .modes()
-        .unwrap();
-    let found = modes.iter().map(|mode| mode.frequency).filter(|f| *f > 0.0);
+    let (list, solver, solution, linear) = of_list(list);
+    let turning = TurningAssembly::new(&list).unwrap();
+    let equations = turning.equations((&list, &solver), (&solution, &linear), speed);
+    let modes = equations.unwrap().modes().unwrap();
+    // The two sleeves have the part of the other in their mesh.
+    let found = modes.iter().filter(|mode| mode.standing_share < 1.0 - 1e-9);
+    let found = found.map(|mode| mode.frequency).filter(|f| *f > 0.0);
     (found.collect(), linear.of_shaft(&list, 0.0).unwrap())
 }
 
@@ -135,7 +135,8 @@ fn modes_over_the_speed_have_the_bodies_that_bearings_share() {
     let of = |list| over_speed(list, &INERTIA, 800.0).0;
     let parts = of(in_and_on(in_one(false, 70e9), on_one(false, CARRIED)));
     let bodies = of(in_and_on(in_two(), on_two()));
-    assert!(off(&parts, &bodies) < 1e-6, "{parts:?} {bodies:?}");
+    let [parts, bodies] = [&parts[..40], &bodies[..40]];
+    assert!(off(parts, bodies) < 1e-6, "{parts:?} {bodies:?}");
 }
 
 fn differences_of_shaft(side: Side, ties: [Arc<SeatTie>; 2], least: f64) {

@@ -1,11 +1,14 @@
 //! Stiffness and mass: symmetry, zero-energy motions, total mass, same bits.
 
-use fem::{Pattern, assemble_mass, assemble_node_mass, assemble_stiffness, stiffness_product};
+use fem::{
+    Pattern, assemble_azimuthal_mass, assemble_mass, assemble_node_mass, assemble_stiffness,
+    stiffness_product,
+};
 use mesh::{ElementKind, Mesh};
 use sprs::CsMat;
 
-use crate::support::grids::{Ends, crooked_cube, mapped_grid, wavy_cube};
-use crate::support::{assert_close, eigenvalues, max_abs, multiply, steel};
+use crate::support::grids::{Ends, crooked_cube, mapped_grid, ring, wavy_cube};
+use crate::support::{assert_close, eigenvalues, max_abs, multiply, nodal_field, steel};
 
 /// One distorted element of a kind, curved where it can be.
 fn single(kind: ElementKind) -> Mesh {
@@ -163,5 +166,31 @@ fn one_thread_and_two_give_the_same_bits() {
         let mesh = wavy_cube(kind, if kind == ElementKind::Tet10 { 6 } else { 11 });
         assert!(mesh.n_elements() > 1024);
         assert!(run(1, &mesh) == run(2, &mesh), "{}", kind.name());
+    }
+}
+
+/// Wrong: a shaft would whirl with another gyroscopic moment. Of tilts by the velocity of others it is half the polar
+/// moment of inertia, of translations nothing, and no motion has power of its own.
+#[test]
+fn azimuthal_mass_has_half_the_polar_inertia_of_tilts() {
+    for kind in ElementKind::ALL {
+        let mesh = ring(kind, [2, 16, 2], [0.3, 0.5], 0.4, std::f64::consts::TAU);
+        let matrix = assemble_azimuthal_mass(&mesh, &steel()).unwrap();
+        let inertia = fem::inertia(&mesh, &steel()).unwrap();
+        let [tilt_x, tilt_y, x] = [
+            nodal_field(&mesh, |[_, y, z]| [0.0, -z, y]),
+            nodal_field(&mesh, |[x, _, z]| [z, 0.0, -x]),
+            nodal_field(&mesh, |_| [1.0, 0.0, 0.0]),
+        ];
+        let form = |a: &[f64], b: &[f64]| -> f64 {
+            let moved = multiply(&matrix, b);
+            a.iter().zip(moved).map(|(a, b)| a * b).sum()
+        };
+        let polar = inertia.tensor[2][2];
+        let error = (2.0 * form(&tilt_x, &tilt_y) / polar - 1.0).abs();
+        // Straight edges of a mesh that is not round.
+        assert!(error < 1e-12, "{}: {error:e}", kind.name());
+        assert!((form(&tilt_x, &tilt_y) + form(&tilt_y, &tilt_x)).abs() < 1e-14 * polar);
+        assert!(form(&x, &tilt_y).abs() < 1e-13 * inertia.mass && form(&x, &x).abs() < 1e-13 * inertia.mass);
     }
 }
