@@ -5,10 +5,10 @@ use assembly::modes::modes;
 use assembly::stiffness::LinearAssembly;
 use assembly::whirl::TurningAssembly;
 use dynamics::whirl::{Whirl, WhirlMode};
-use dynamics::{Backend, DampingLaws, ModesSettings};
+use dynamics::{Backend, DampingLaws, ModesSettings, ShaftDof};
 use ring::rigid::RigidInertia;
 
-use super::shaft::{CARRIED, HELD_BELOW, on_one, on_one_of, on_one_turned};
+use super::shaft::{CARRIED, HELD_BELOW, on_one, on_one_of, on_one_turned, on_two};
 use super::stiffness::in_and_on;
 use super::*;
 
@@ -134,4 +134,36 @@ fn over_the_speed_the_order_of_the_list_does_not_matter() {
         assert!(off < 1e-6 && a.whirl == b.whirl, "{a:?} {b:?}");
         assert!((a.roundness - b.roundness).abs() < 1e-4, "{a:?} {b:?}");
     }
+}
+
+/// Wrong: a bearing alone would not be a list of one: the shaft's own mass, the body on it or its ring would be lost.
+#[test]
+fn over_the_speed_a_list_of_one_is_the_bearing_alone() {
+    const SPEED: f64 = 2000.0;
+    let mut list = tied_pair(Side::Inner, on_two(), [0, 1]);
+    list.bearings.truncate(1);
+    list.shaft = ShaftBody::rigid(RigidInertia::default(), [None; 5]);
+    list.load = vec![50.0, -20.0, 400.0, 0.0, 0.3];
+    let model = &mut list.bearings[0].model;
+    model.shaft_mass = HEAVY.mass;
+    model.shaft_inertia.transverse = HEAVY.transverse;
+    model.shaft_inertia.polar = HEAVY.polar;
+    let expected = over_speed(&mut list, SPEED, 0.3);
+    let mut solver = AssemblySolver::new(&list).unwrap();
+    let solution = solver.solve(&mut list, None).unwrap_or_else(|e| panic!("{e}"));
+    let linear = LinearAssembly::new(&list, &solver, &solution, DampingLaws::default()).unwrap();
+    let model = &mut list.bearings[0].model;
+    model.shaft = [ShaftDof::Free; 5];
+    let alone = TurningAssembly::of_one("alone", model).unwrap().unwrap();
+    let stands = (solver.of_bearing(0), &solution.bearings[0]);
+    let equations = alone.equations_of_one(model, stands, &linear.bearings[0], SPEED);
+    let mut found = equations.unwrap().modes().unwrap();
+    found.retain(|mode| mode.frequency > 0.0 && mode.shaft_share > 0.3);
+    assert!(found.len() > 4 && found.len() == expected.len());
+    for (a, b) in found.iter().zip(&expected) {
+        let off = (a.frequency / b.frequency - 1.0).abs();
+        assert!(off < 1e-9 && a.whirl == b.whirl, "{a:?} {b:?}");
+    }
+    // Without what turns pairs do not split: the shaft's and the body's spin does.
+    assert!(found.iter().any(|mode| mode.whirl == Whirl::Forward));
 }
