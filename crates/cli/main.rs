@@ -37,6 +37,7 @@ mod several_modes;
 mod several_motion;
 mod several_read;
 mod several_ready;
+mod several_rest;
 mod several_state;
 mod several_stiffness;
 mod shared;

@@ -27,7 +27,7 @@ use crate::progress::Progress;
 use crate::quasi_static;
 use crate::remarks::Remarks;
 use crate::shared::note_unshared;
-use crate::{several, several_modes, several_motion};
+use crate::{several, several_modes, several_motion, several_rest};
 
 /// One load case of a run: the swept value (None for a static scene) and its scene.
 pub type SweptScene = (Option<f64>, Scene);
@@ -248,7 +248,7 @@ fn run_list(
     match &list.analysis {
         Analysis::Dynamic(dynamic) => several_motion::run(list, dynamic, &dir, limits, start)?,
         Analysis::Modes(wanted) => several_modes::run(list, wanted, &dir, limits, start)?,
-        _ => several::run(list, &dir, start)?,
+        _ => several_rest::run(list, &dir, start)?,
     }
     Ok(dir)
 }

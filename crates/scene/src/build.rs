@@ -2,7 +2,6 @@
 
 use std::sync::Arc;
 
-use comm::Communicator;
 use contact::hertz::Elastic;
 use contact::{BearingGeometry, Groove, HertzContact, LeastSize, Side, SphereCompliance};
 use dynamics::RACEWAY_GROUP;
@@ -10,9 +9,7 @@ use dynamics::effects::Setting;
 use dynamics::kinematics::Rolling;
 use dynamics::model::{ShaftInertia, elastic};
 use dynamics::mounting::{Mounting, Unmounted};
-use dynamics::{
-    Backend, ContactMode, ContactSettings, Hold, Model, RingModel, Sectors, ShaftDof, Surfaces, Tolerances,
-};
+use dynamics::{ContactMode, ContactSettings, Hold, Model, RingModel, ShaftDof, Surfaces, Tolerances};
 use fem::Material;
 use mesh::{Coverage, Cylinder, Mesh, Torus};
 
@@ -111,7 +108,7 @@ pub fn model_with_rings(scene: &Scene, rings: [Option<Arc<RingModel>>; 2]) -> Re
         cage: scene.cage.clone(),
         contact,
         effects,
-        backend: backend(scene),
+        backend: scene.solver.of_rings(),
         tolerances: Tolerances {
             force: scene.solver.tolerance,
             max_rounds: scene.solver.max_iterations,
@@ -188,22 +185,9 @@ fn mounting(
         expansion: [materials.rings, materials.balls].map(|m| m.expansion.unwrap_or(0.0)),
         yield_strength: materials.rings.yield_strength,
         speeds: Side::BOTH.map(largest),
-        backend: backend(scene),
+        backend: scene.solver.of_rings(),
     };
     Ok(Mounting::new(&bearing, &scene.effects.conditions())?)
-}
-
-/// Linear solver of the rings.
-fn backend(scene: &Scene) -> Backend {
-    match scene.solver.backend {
-        tables::Backend::Auto => Backend::Auto,
-        tables::Backend::Cyclic => Backend::Cyclic,
-        tables::Backend::Sparse => Backend::Sparse,
-        tables::Backend::Sector => Backend::Sector(Sectors {
-            n_sectors: scene.solver.sectors,
-            comm: Communicator::world(),
-        }),
-    }
 }
 
 /// Dimensions of the bearing, for the contacts.

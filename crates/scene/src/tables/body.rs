@@ -15,7 +15,7 @@ use serde::Deserialize;
 use super::materials::{Material, RawMaterial};
 use super::ring::{MeshFiles, Support};
 use super::ring_name::RingName;
-use super::solver::Backend;
+use super::solver::BackendChoice;
 use super::unit_key::unit_of;
 
 /// Orders round a seat without a word.
@@ -131,7 +131,7 @@ pub struct BodyContext<'a> {
     /// Whether the outer ring turns.
     pub turns_outer: bool,
     /// Linear solver of the rings.
-    pub backend: Backend,
+    pub backend: BackendChoice,
     /// Whether the scene moves in time, or asks for natural modes.
     pub moves: bool,
     /// Effects of the scene.

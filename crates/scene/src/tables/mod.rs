@@ -130,7 +130,7 @@ pub use self::several::{
     SpringPairing, names_of_bearings, overrides_of_types,
 };
 pub use self::shaft::{Motion, Shaft};
-pub use self::solver::{Backend, Solver};
+pub use self::solver::{BackendChoice, Solver};
 pub use self::start::Start;
 pub use self::stress::Stress;
 pub use self::stress_probes::StressLine;

@@ -14,7 +14,7 @@ use super::life::Life;
 use super::lubricant::Lubrication;
 use super::materials::Materials;
 use super::probes::{Probes, ProbesContext};
-use super::solver::Backend;
+use super::solver::BackendChoice;
 use super::stress::{Stress, StressContext};
 use super::{RawScene, Source};
 
@@ -36,7 +36,7 @@ impl RawScene {
     pub(super) fn bodies(
         &self,
         source: &Source<'_>,
-        backend: Backend,
+        backend: BackendChoice,
         problems: &mut Problems,
         assumed: &mut Vec<String>,
     ) -> [Option<SceneBody>; 2] {
