@@ -16,6 +16,7 @@ use fem::Material;
 use input::Schedule;
 use ring::rigid::RigidInertia;
 use ring::{Backend, RingModel};
+use serde::Deserialize;
 use timer::SharedLaps;
 
 use crate::balls::BallResult;
@@ -51,14 +52,15 @@ pub struct ShaftInertia {
     pub polar: f64,
 }
 
-/// How balls meet raceways.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// How the raceways' shape, the forces on the rings and the local compliance are represented.
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq)]
+#[serde(rename_all = "snake_case")]
 pub enum ContactMode {
-    /// Exact torus, force spread over a patch, local compliance matched.
+    /// Exact torus, force spread over a Hertz patch, local compliance matched: accurate on any mesh.
     Patch,
-    /// Mesh facets found by bounding boxes: the paper's way; local compliance counted twice.
+    /// Facets of the mesh and their nodes, found by bounding boxes: the paper's way; counts the local compliance twice.
     Facet,
-    /// Exact torus, rigid rings: the Jones-Harris limit.
+    /// Exact torus, rings do not deform: the Jones-Harris limit.
     Rigid,
 }
 

@@ -8,7 +8,7 @@ use contact::Side;
 use dynamics::effects::{BallCentrifugal, FrameRotation, Gravity, GyroscopicMoment};
 use dynamics::kinematics::{BallSpeeds, Kinematics, RingSpeeds, Rolling, Speed};
 use dynamics::motion::{Motion, MotionSettings, MotionState, StepCache};
-use dynamics::{ContactMode, Hold, Model, Pose, QuasiStatic, ShaftDof, StaticSolution, StaticSolver};
+use dynamics::{ContactMode, Hold, Model, Pose, QuasiStaticMotion, ShaftDof, StaticSolution, StaticSolver};
 use input::Schedule;
 use support::rings::Level;
 use support::{Case, equilibrium, relative};
@@ -246,7 +246,7 @@ fn equilibria_in_time_turn_the_outer_ring() {
     let rolling = Rolling::new(&model.geometry, turning, [0.0; 2]);
     let mirrored = Rolling::new(&model.geometry, speeds(-SPEED, 0.0), [0.0; 2]);
     let solve = |rolling: Rolling| {
-        let mut quasi = QuasiStatic::new(&model, rolling, 7e-5).unwrap();
+        let mut quasi = QuasiStaticMotion::new(&model, rolling, 7e-5).unwrap();
         quasi.step(3, None).unwrap()
     };
     let (outer, inner) = (solve(rolling), solve(mirrored));

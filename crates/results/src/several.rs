@@ -16,7 +16,7 @@ use scene::{Analysis, SeveralScene};
 use serde::Serialize;
 use timer::Laps;
 
-use crate::cut::Cut;
+use crate::cut::TableCut;
 use crate::modes::FrequenciesSummary;
 use crate::summary::{peak_memory, print_peak, print_seconds, print_warnings, write_summary};
 use crate::tables::{append, ball_cells, ball_columns, create, head, number, place_of};
@@ -88,19 +88,19 @@ impl SeveralTables {
     }
 
     /// Looks where the files of an earlier run are to be cut to go on after its step `last`; on rank 0.
-    pub fn cuts(dir: &Path, first: &ListState, last: u64) -> anyhow::Result<Vec<Cut>> {
+    pub fn cuts(dir: &Path, first: &ListState, last: u64) -> anyhow::Result<Vec<TableCut>> {
         if !Communicator::world().is_root() {
             return Ok(Vec::new());
         }
         let cuts = heads(None, &first.energies).into_iter();
-        cuts.map(|(name, columns)| Cut::find(dir, name, &columns.join(","), last))
+        cuts.map(|(name, columns)| TableCut::find(dir, name, &columns.join(","), last))
             .collect()
     }
 
     /// Opens the files of an earlier run at [`SeveralTables::cuts`]. Rows after the cuts are moved into the folder that
     /// `aside` makes.
     pub fn resume(
-        cuts: &[Cut],
+        cuts: &[TableCut],
         aside: &mut dyn FnMut() -> anyhow::Result<PathBuf>,
     ) -> anyhow::Result<SeveralTables> {
         if !Communicator::world().is_root() {

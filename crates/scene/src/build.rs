@@ -9,7 +9,7 @@ use dynamics::effects::Setting;
 use dynamics::kinematics::Rolling;
 use dynamics::model::{ShaftInertia, elastic};
 use dynamics::mounting::{Mounting, Unmounted};
-use dynamics::{ContactMode, ContactSettings, Hold, Model, RingModel, ShaftDof, Surfaces, Tolerances};
+use dynamics::{ContactSettings, Hold, Model, RingModel, ShaftDof, Surfaces, Tolerances};
 use fem::Material;
 use mesh::{Coverage, Cylinder, Mesh, Torus};
 
@@ -82,9 +82,9 @@ pub fn model_with_rings(scene: &Scene, rings: [Option<Arc<RingModel>>; 2]) -> Re
     let (shaft, ring) = (&scene.shaft, scene.inner.inertia);
     let contact = contact_settings(scene, &geometry, &rings);
     let dofs = [shaft.x, shaft.y, shaft.z, shaft.tilt_x, shaft.tilt_y].map(|motion| match motion {
-        tables::Motion::Free => ShaftDof::Free,
-        tables::Motion::Locked => ShaftDof::Prescribed(0.0),
-        tables::Motion::Prescribed(value) => ShaftDof::Prescribed(value),
+        tables::ShaftMotion::Free => ShaftDof::Free,
+        tables::ShaftMotion::Locked => ShaftDof::Prescribed(0.0),
+        tables::ShaftMotion::Prescribed(value) => ShaftDof::Prescribed(value),
     });
     let mut model = Model {
         geometry,
@@ -150,11 +150,7 @@ fn contact_settings(
     };
     let patch_length = scene.contact.patch_length.unwrap_or(least_length);
     ContactSettings {
-        mode: match scene.contact.mode {
-            tables::ContactMode::Patch => ContactMode::Patch,
-            tables::ContactMode::Facet => ContactMode::Facet,
-            tables::ContactMode::Rigid => ContactMode::Rigid,
-        },
+        mode: scene.contact.mode,
         least_patch: LeastSize {
             spacings: scene.contact.patch_elements,
             rolling: patch_length,
@@ -205,7 +201,7 @@ pub fn geometry(scene: &Scene) -> BearingGeometry {
 }
 
 /// A material, checked.
-pub fn material(m: &tables::Material) -> Result<Material, BuildError> {
+pub fn material(m: &tables::MaterialProperties) -> Result<Material, BuildError> {
     Ok(Material::new(m.young_modulus, m.poisson_ratio, m.density)?)
 }
 

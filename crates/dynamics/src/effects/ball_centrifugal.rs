@@ -24,9 +24,9 @@ const MATTERS: f64 = 0.01;
 /// The table of a scene: it has no keys.
 #[derive(Clone, Debug, Deserialize, PartialEq)]
 #[serde(deny_unknown_fields, expecting = "the empty table [effects.ball_centrifugal]")]
-pub struct Table {}
+pub struct BallCentrifugalTable {}
 
-impl table::Table for Table {
+impl table::EffectTable for BallCentrifugalTable {
     fn about() -> About {
         About {
             name: "ball_centrifugal",

@@ -32,9 +32,9 @@ const EXAMPLE: &str = "[effects.frame_rotation]        # needs [speed] and a fle
 /// The table of a scene: it has no keys.
 #[derive(Clone, Debug, Deserialize, PartialEq)]
 #[serde(deny_unknown_fields, expecting = "the empty table [effects.frame_rotation]")]
-pub struct Table {}
+pub struct FrameRotationTable {}
 
-impl table::Table for Table {
+impl table::EffectTable for FrameRotationTable {
     fn about() -> About {
         About {
             name: "frame_rotation",

@@ -63,12 +63,12 @@ const HOLD: f64 = 0.02;
 /// The table of a scene.
 #[derive(Clone, Debug, Deserialize, PartialEq)]
 #[serde(deny_unknown_fields, expecting = "the table [effects.gyroscopic_moment]")]
-pub struct Table {
+pub struct GyroscopicMomentTable {
     inner_share: Option<f64>,
     outer_share: Option<f64>,
 }
 
-impl Table {
+impl GyroscopicMomentTable {
     /// Shares of the inner and the outer raceway; one that is not given is the rest of 2, without any the outer raceway
     /// carries all.
     pub fn shares(&self) -> [f64; 2] {
@@ -77,7 +77,7 @@ impl Table {
     }
 }
 
-impl table::Table for Table {
+impl table::EffectTable for GyroscopicMomentTable {
     fn about() -> About {
         About {
             name: "gyroscopic_moment",

@@ -12,7 +12,7 @@ use body::matrix::MatrixFiles;
 use input::{LENGTH, MASS, Problems, Quantity, RATE, STIFFNESS};
 use serde::Deserialize;
 
-use super::materials::{Material, RawMaterial};
+use super::materials::{MaterialProperties, RawMaterial};
 use super::ring::{MeshFiles, Support};
 use super::ring_name::RingName;
 use super::solver::BackendChoice;
@@ -110,7 +110,7 @@ pub enum BodySource {
         /// Length of one unit of the file, m.
         mesh_unit: f64,
         /// What it is made of.
-        material: Material,
+        material: MaterialProperties,
         /// Facet groups that are held.
         fixed: Vec<String>,
     },

@@ -5,8 +5,8 @@
 use input::{Problems, Quantity, RATE};
 use serde::Deserialize;
 
-use super::contact::ContactMode;
 use super::solver::BackendChoice;
+use dynamics::ContactMode;
 
 /// As typed.
 #[derive(Debug, Deserialize)]

@@ -4,13 +4,13 @@ use rayon::prelude::*;
 
 use super::columns::SectorColumns;
 use super::factor::SectorCholesky;
-use super::layout::Place;
+use super::layout::RowPlace;
 use super::part::Part;
 use crate::linear_solver::{LinearSolver, SparseVector};
 
 /// Right-hand sides: dense ones, column-major `[n][..]`, then sparse ones.
 #[derive(Clone, Copy)]
-struct Loads<'a> {
+struct RightHandSides<'a> {
     dense: &'a [f64],
     sparse: &'a [SparseVector],
     n_dense: usize,
@@ -19,7 +19,7 @@ struct Loads<'a> {
 /// Columns that are put in place together.
 const GROUP: usize = 8;
 
-impl Loads<'_> {
+impl RightHandSides<'_> {
     fn n_rhs(&self) -> usize {
         self.n_dense + self.sparse.len()
     }
@@ -63,7 +63,7 @@ impl SectorCholesky {
     pub fn columns(&self, dense: &[f64], sparse: &[SparseVector]) -> SectorColumns {
         let n = self.n().max(1);
         assert!(dense.len().is_multiple_of(n), "right-hand sides of {n} rows");
-        let loads = Loads {
+        let loads = RightHandSides {
             dense,
             sparse,
             n_dense: dense.len() / n,
@@ -103,7 +103,7 @@ impl SectorCholesky {
     }
 
     /// y and -F y of the sectors owned, by places, `[n_rows][n_rhs]` each.
-    fn forward(&self, loads: Loads<'_>) -> Vec<Vec<f64>> {
+    fn forward(&self, loads: RightHandSides<'_>) -> Vec<Vec<f64>> {
         let (n, n_rhs) = (self.n(), loads.n_rhs());
         let first = self.shared.owned().start;
         let forward = |(i, part): (usize, &Part)| {
@@ -120,7 +120,7 @@ impl SectorCholesky {
             }
             for (r, load) in loads.sparse.iter().enumerate() {
                 for &(row, value) in load {
-                    if self.shared.layout.place(row) == Place::Inside(first + i) {
+                    if self.shared.layout.place(row) == RowPlace::Inside(first + i) {
                         let place = places[sector.inside(row)] as usize;
                         x[n_rhs * place + loads.n_dense + r] += value;
                     }
@@ -133,7 +133,7 @@ impl SectorCholesky {
     }
 
     /// The solution on the interface, `[places][n_rhs]`, on all ranks.
-    fn solve_interface(&self, loads: Loads<'_>, local: &[Vec<f64>]) -> Vec<f64> {
+    fn solve_interface(&self, loads: RightHandSides<'_>, local: &[Vec<f64>]) -> Vec<f64> {
         let Some(interface) = &self.interface else {
             return Vec::new();
         };
@@ -154,7 +154,7 @@ impl SectorCholesky {
         }
         for (r, load) in loads.sparse.iter().enumerate() {
             for &(row, value) in load {
-                if let Place::Shared(place) = shared.layout.place(row) {
+                if let RowPlace::Shared(place) = shared.layout.place(row) {
                     x[n_rhs * place + loads.n_dense + r] += value;
                 }
             }
@@ -193,8 +193,8 @@ impl SectorCholesky {
             let mut group: Vec<&mut [f64]> = group.chunks_exact_mut(n).collect();
             shared.layout.each_row(|row, place| {
                 let (values, place) = match place {
-                    Place::Inside(place) => (&all, place),
-                    Place::Shared(place) => (&columns.interface, place),
+                    RowPlace::Inside(place) => (&all, place),
+                    RowPlace::Shared(place) => (&columns.interface, place),
                 };
                 let values = &values[n_rhs * place + GROUP * g..n_rhs * (place + 1)];
                 group

@@ -6,7 +6,7 @@ use fem::Material;
 use input::{ANGLE, Clock, DENSITY, FORCE, INERTIA, LENGTH, MASS, MOMENT, Problems, Quantity, STRESS};
 use serde::Deserialize;
 
-use super::super::shaft::{Motion, RawMotion};
+use super::super::shaft::{RawMotion, ShaftMotion};
 use super::load::ShaftLoad;
 
 /// As typed.
@@ -109,7 +109,7 @@ pub enum ShaftKind {
 #[derive(Clone, Debug, PartialEq)]
 pub struct RigidShaft {
     /// Motions x, y, z, tilt x, tilt y of the axis point at position 0.
-    pub motions: [Motion; 5],
+    pub motions: [ShaftMotion; 5],
     /// Mass besides that along it, kg; its weight acts at the load point.
     pub mass: f64,
     /// Its moment of inertia about x and y through position 0, kg m^2.
@@ -396,8 +396,8 @@ impl CommonShaft {
     }
 }
 
-fn motion<const KIND: usize>(raw: &Option<RawMotion<KIND>>) -> Motion {
-    raw.as_ref().map_or(Motion::Free, RawMotion::motion)
+fn motion<const KIND: usize>(raw: &Option<RawMotion<KIND>>) -> ShaftMotion {
+    raw.as_ref().map_or(ShaftMotion::Free, RawMotion::motion)
 }
 
 fn check_motion<const KIND: usize>(

@@ -125,9 +125,9 @@ fn all_loads_and_shaft_motions_take_schedules() {
     assert_eq!(effects.radial_force.unwrap().schedule(), expected(1.0));
     assert_eq!(effects.moment.unwrap().schedule(), expected(2.0));
     assert_eq!(effects.gravity.unwrap().schedule(), expected(3.0));
-    assert_eq!(scene.shaft.tilt_y, Motion::Prescribed(1e-3));
+    assert_eq!(scene.shaft.tilt_y, ShaftMotion::Prescribed(1e-3));
     assert_eq!(scene.shaft.schedules[4], expected(4.0));
-    assert_eq!(scene.shaft.y, Motion::Prescribed(-20e-6));
+    assert_eq!(scene.shaft.y, ShaftMotion::Prescribed(-20e-6));
     assert!(
         scene.shaft.schedules[..4]
             .iter()
@@ -376,7 +376,7 @@ fn the_delivered_transients_are_valid() {
         );
         assert_eq!(
             (scene.shaft.tilt_x, scene.shaft.tilt_y),
-            (Motion::Locked, Motion::Locked),
+            (ShaftMotion::Locked, ShaftMotion::Locked),
             "{name}"
         );
         for ring in [&scene.inner, &scene.outer] {
