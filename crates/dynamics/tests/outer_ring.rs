@@ -5,7 +5,7 @@ mod support;
 use std::f64::consts::PI;
 
 use contact::Side;
-use dynamics::effects::{BallCentrifugal, FrameRotation, Gravity, GyroscopicMoment};
+use dynamics::effects::{BallCentrifugal, FrameRotation, Gravity, GyroscopicMoment, MomentShares};
 use dynamics::kinematics::{BallSpeeds, Kinematics, RingSpeeds, Rolling, Speed};
 use dynamics::motion::{Motion, MotionSettings, MotionState, StepCache};
 use dynamics::{ContactMode, Hold, Model, Pose, QuasiStaticMotion, ShaftDof, StaticSolution, StaticSolver};
@@ -101,7 +101,7 @@ fn the_gyroscopic_moment_needs_spin_and_cage() {
         let effect = GyroscopicMoment {
             speeds: speeds(inner, outer),
             slip: [0.0; 2],
-            shares: [0.0, 2.0],
+            shares: MomentShares::OUTER_CONTROL,
             ball_speeds: BallSpeeds::FreeAngle,
         };
         effect.moment(&model, &Default::default(), 0)

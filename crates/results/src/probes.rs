@@ -97,7 +97,7 @@ impl PlacedProbes {
             near_fields: Side::BOTH.map(near_field),
             points: lines(&scene.probes.points)?,
             profiles: lines(&scene.probes.profiles)?,
-            recoveries: [recovery(Side::Inner)?, recovery(Side::Outer)?],
+            recoveries: Side::try_both(recovery)?,
             nodes,
             contacts: scene.probes.contacts.clone(),
             gauges: Gauges::new(&scene.probes.gauges, model)?,

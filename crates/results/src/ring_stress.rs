@@ -110,7 +110,7 @@ impl RingStress {
         };
         Ok(RingStress {
             kind,
-            rings: [recovery(Side::Inner)?, recovery(Side::Outer)?],
+            rings: Side::try_both(recovery)?,
             n_balls: model.geometry.n_balls,
             bodies: body_recoveries(model, kind)?,
         })

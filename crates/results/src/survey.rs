@@ -127,7 +127,7 @@ fn build_shared(
         comm,
     };
     let mut rings = [None, None];
-    for (side, body) in [(Side::Inner, &point.inner.body), (Side::Outer, &point.outer.body)] {
+    for (side, body) in Side::BOTH.into_iter().zip([&point.inner.body, &point.outer.body]) {
         if body.is_none() {
             continue;
         }

@@ -42,10 +42,8 @@ pub fn build_model(scene: &Scene) -> Result<(Model, NodeTags), BuildError> {
     let geometry = geometry(scene);
     geometry.validate()?;
     require_resolvable(scene, &geometry)?;
-    let rings = rayon::join(
-        || ring(scene, &geometry, Side::Inner),
-        || ring(scene, &geometry, Side::Outer),
-    );
+    let [inner, outer] = Side::BOTH;
+    let rings = rayon::join(|| ring(scene, &geometry, inner), || ring(scene, &geometry, outer));
     let (inner, inner_tags) = rings.0?.unzip();
     let (outer, outer_tags) = rings.1?.unzip();
     for (side, ring) in Side::BOTH.into_iter().zip([&inner, &outer]) {
@@ -316,10 +314,10 @@ pub fn ring_of(scene: &Scene, side: Side, material: Material, mesh: Mesh) -> Opt
 /// The ring of one side in the scene, the facet group that is held, and the diameter by which the unit of its mesh is
 /// checked, m.
 fn of_side(scene: &Scene, side: Side) -> (&tables::Ring, &'static str, f64) {
-    match side {
-        Side::Inner => (&scene.inner, "bore", scene.bearing.inner_raceway_diameter),
-        Side::Outer => (&scene.outer, "seat", scene.bearing.outside_diameter),
-    }
+    side.choose(
+        (&scene.inner, "bore", scene.bearing.inner_raceway_diameter),
+        (&scene.outer, "seat", scene.bearing.outside_diameter),
+    )
 }
 
 /// The surface of a groove.

@@ -136,10 +136,10 @@ fn doubt_material(table: &str, material: &MaterialProperties, lines: &mut Vec<St
 
 /// Compares the held surface and the width of a mesh with the scene.
 fn doubt_size(scene: &Scene, side: Side, ring: &RingModel, path: &str, lines: &mut Vec<String>) {
-    let (key, stated) = match side {
-        Side::Inner => ("bearing.bore_diameter", scene.bearing.bore_diameter),
-        Side::Outer => ("bearing.outside_diameter", scene.bearing.outside_diameter),
-    };
+    let (key, stated) = side.choose(
+        ("bearing.bore_diameter", scene.bearing.bore_diameter),
+        ("bearing.outside_diameter", scene.bearing.outside_diameter),
+    );
     let (mesh, group) = (&ring.mesh, ring.held_group);
     let mut say = |what: &str, key: &str, found: f64, stated: f64| {
         let [found, stated] = [found, stated].map(Quantity::<LENGTH>::about);

@@ -13,6 +13,7 @@ use super::rules::{Case, judge, percent};
 use super::table::{self, About, Setting, SpeedRole, Trial};
 use crate::balls::BallResult;
 use crate::error::DynamicsError;
+use crate::kinematics::SlipRatios;
 use crate::kinematics::{BallSpeeds, Kinematics, RingSpeeds};
 use crate::model::{Effect, Model};
 
@@ -65,7 +66,7 @@ pub struct BallCentrifugal {
     /// Speeds of the rings.
     pub speeds: RingSpeeds,
     /// Slip ratios at the inner and outer raceway.
-    pub slip: [f64; 2],
+    pub slip: SlipRatios,
     /// Contact angles that the speeds follow.
     pub ball_speeds: BallSpeeds,
 }

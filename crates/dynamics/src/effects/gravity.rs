@@ -150,7 +150,7 @@ impl Gravity {
         Ok(Gravity {
             acceleration,
             schedule,
-            node_masses: [masses(Side::Inner)?, masses(Side::Outer)?],
+            node_masses: Side::try_both(masses)?,
         })
     }
 }

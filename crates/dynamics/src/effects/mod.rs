@@ -30,7 +30,7 @@ pub use axial_force::AxialForce;
 pub use ball_centrifugal::BallCentrifugal;
 pub use frame_rotation::{FrameRotation, static_inertia};
 pub use gravity::Gravity;
-pub use gyroscopic_moment::GyroscopicMoment;
+pub use gyroscopic_moment::{GyroscopicMoment, MomentShares};
 pub(crate) use loads::resultant;
 pub use loads::{AtEquilibrium, FrameTurn, Loads, Now};
 

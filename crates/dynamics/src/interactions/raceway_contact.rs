@@ -395,9 +395,9 @@ fn link(sites: &BallSites, ball: usize, rings: &[GrooveBodies; 2]) -> Link {
     ];
     let mut reach = LinkRows::default();
     for (site, ring) in sites.iter().zip(rings) {
-        let of_side = |[radial, axial]: [f64; 2]| match site.side {
-            Side::Inner => [radial, axial, 0.0, 0.0],
-            Side::Outer => [0.0, 0.0, radial, axial],
+        let of_side = |[radial, axial]: [f64; 2]| {
+            let side = site.side;
+            side.choose([radial, axial, 0.0, 0.0], [0.0, 0.0, radial, axial])
         };
         if let Some(elastic) = ring.elastic {
             let body = BodyId::Elastic(elastic);

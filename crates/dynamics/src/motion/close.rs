@@ -50,19 +50,15 @@ impl Motion<'_> {
             }
         }
         let next = self.look_ahead(state, part, solution, upcoming);
-        let [inner, outer] = &mut part.rings;
         let end = |step: &mut Option<Box<dyn ElasticStep + '_>>, side: Side| {
             let step = step.as_mut()?;
             let next = next.as_ref().map(|next| self.known_load(side, next));
             Some(step.end(forces[side.index()].at_ports(), scale, next))
         };
-        let (inner, outer) = self
-            .model
-            .backend
-            .both(|| end(inner, Side::Inner), || end(outer, Side::Outer));
+        let ends = self.model.backend.with_sides(part.rings.each_mut(), end);
         part.report.laps.add(UPDATE, part.clock.lap());
         let mut rings = [None, None];
-        for (ring, end) in rings.iter_mut().zip([inner, outer]) {
+        for (ring, end) in rings.iter_mut().zip(ends) {
             match end {
                 Some(End::Done(ended)) => *ring = Some(*ended),
                 Some(End::Again) => {

@@ -15,6 +15,7 @@ use super::place::Placing;
 use super::run::Motion;
 use super::solve::{StepSolution, check_patches, check_range};
 use super::span::PartSpan;
+use super::state::PatchPlace;
 use super::state::{MotionState, StepReport};
 use crate::bearing::BearingParts;
 use crate::costs::{BLOCK_SOLVE, LOADS, NEWTON, PATCHES, UPDATE};
@@ -27,8 +28,8 @@ const MAX_PLACE_ROUNDS: usize = 20;
 pub(super) struct StepPart<'m> {
     pub span: PartSpan,
     pub expected: Arc<ExpectedLoads>,
-    /// Contact angle, rad, and force, N, for which the patches were placed, by site.
-    places: Vec<[f64; 2]>,
+    /// Where the patches were placed, by site.
+    places: Vec<PatchPlace>,
     placing: Placing,
     pub rings: RingSteps<'m>,
     pub parts: BearingParts,
@@ -175,16 +176,12 @@ impl Motion<'_> {
     /// Both rings with their contacts where the patches are.
     fn move_contacts(&self, part: &mut StepPart<'_>) {
         let placing = &part.placing;
-        let [inner, outer] = &mut part.rings;
         let move_ring = |step: &mut Option<Box<dyn ElasticStep + '_>>, side: Side| {
             step.as_mut()
                 .map(|step| step.move_contacts(self.feet(side, placing)))
         };
-        let (inner, outer) = self
-            .model
-            .backend
-            .both(|| move_ring(inner, Side::Inner), || move_ring(outer, Side::Outer));
-        let known = longest([&inner, &outer].into_iter().flatten());
+        let known = self.model.backend.with_sides(part.rings.each_mut(), move_ring);
+        let known = longest(known.iter().flatten());
         let laps = &mut part.report.laps;
         laps.add(BLOCK_SOLVE, part.clock.lap() - known.total());
         laps.merge(&known);

@@ -372,7 +372,7 @@ impl RawCage {
         let CageTube { bore, outside, width } = tube?;
         Some(Some(Land {
             side,
-            radius: 0.5 * if side == Side::Inner { bore } else { outside },
+            radius: 0.5 * side.choose(bore, outside),
             width,
             clearance: clearance?,
             viscosity: viscosity.map_or(0.0, Quantity::si),

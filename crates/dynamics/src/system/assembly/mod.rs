@@ -61,10 +61,8 @@ impl<'a> System<'a> {
             starts: Vec::new(),
         };
         system.start = system.at_start();
-        let families = 0..system.interactions.len();
-        system.starts = families
-            .map(|family| system.lengths(family, &system.start))
-            .collect();
+        let at_start = |family: usize| system.lengths(family, &system.start);
+        system.starts = (0..system.interactions.len()).map(at_start).collect();
         system
     }
 
@@ -98,11 +96,8 @@ impl<'a> System<'a> {
             .flat_map(|body| body.guess(self.interval))
             .collect();
         for body in &self.elastic {
-            let guess = if body.guess.is_empty() {
-                &body.start
-            } else {
-                &body.guess
-            };
+            let is_known = !body.guess.is_empty();
+            let guess = if is_known { &body.guess } else { &body.start };
             x.extend_from_slice(&guess[..body.n_moving]);
         }
         x
@@ -318,15 +313,14 @@ impl<'a> System<'a> {
         for (link, lengths) in links.iter().zip(lengths.chunks_exact_mut(n)) {
             lengths.copy_from_slice(&link.reach[..n]);
             for term in &link.terms {
-                let q = coordinates[self.first[self.number(term.body)][1] + term.coordinate];
+                let q = coordinates[self.coordinate(term.body, term.coordinate)];
                 for (l, row) in lengths.iter_mut().zip(term.rows) {
                     *l += row * q;
                 }
             }
             if let Some(finite) = &link.finite {
-                let more = finite
-                    .circle
-                    .lengths(self.finite_coordinates(finite, coordinates));
+                let at = self.finite_coordinates(finite, coordinates);
+                let more = finite.circle.lengths(at);
                 lengths.iter_mut().zip(more).for_each(|(l, more)| *l += more);
             }
         }
@@ -405,12 +399,8 @@ impl<'a> System<'a> {
     }
 
     fn add_port_tangent(&self, i: usize, moves: &Moves, tangent: &mut [f64]) {
-        let (n, body) = (self.n(), self.elastic[i]);
-        let (own, size, m) = (
-            self.unknowns(BodyId::Elastic(i)),
-            body.offset.len(),
-            body.n_moving,
-        );
+        let (n, body, own) = (self.n(), self.elastic[i], self.unknowns(BodyId::Elastic(i)));
+        let (size, m) = (body.offset.len(), body.n_moving);
         // Unknowns that move the ports, and by how much.
         let mut columns: Vec<(usize, Vec<f64>)> = Vec::new();
         for (k, unknown) in own.clone().enumerate() {
@@ -418,9 +408,8 @@ impl<'a> System<'a> {
             slope[k] = 1.0;
             columns.push((unknown, slope));
         }
-        let followed = body
-            .follow
-            .map(|follow| (follow, self.of_followed(&follow, moves)));
+        let of_followed = |follow: Follow| (follow, self.of_followed(&follow, moves));
+        let followed = body.follow.map(of_followed);
         for (follow, unknowns) in followed.iter() {
             for (unknown, q) in unknowns {
                 let mut slope = vec![0.0; m];

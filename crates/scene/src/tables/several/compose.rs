@@ -383,7 +383,8 @@ fn copy_shared(list: &DocumentMut, document: &mut DocumentMut, left_out: &[&str]
 
 /// Bearings lie on the shaft.
 fn check_ends(raw: &[RawMounted], scenes: &[Option<Scene>], shaft: &CommonShaft, problems: &mut Problems) {
-    let ([first, last], text) = shaft.ends();
+    let (ends, text) = shaft.ends();
+    let (first, last) = ends.into_inner();
     for (bearing, scene) in raw.iter().zip(scenes) {
         let Some(scene) = scene else { continue };
         let slack = scene.bearing.inner_groove_radius - 0.5 * scene.bearing.ball_diameter;

@@ -160,7 +160,8 @@ fn shares_of_the_gyroscopic_moment_complete_each_other() {
         let text = with_lines(&format!("[effects.gyroscopic_moment]\n{keys}\n"));
         let scene = parse(&text, &[]).unwrap_or_else(|e| panic!("{e}"));
         let moment = scene.effects.gyroscopic_moment.unwrap();
-        assert_eq!(moment.shares(), shares, "{keys}");
+        let found = moment.shares();
+        assert_eq!([found.inner, found.outer], shares, "{keys}");
     }
     assert_eq!(parse(DYNAMIC, &[]).unwrap().effects.gyroscopic_moment, None);
 }
