@@ -37,6 +37,7 @@ mod several_modes;
 mod several_motion;
 mod several_read;
 mod several_ready;
+mod several_rest;
 mod several_state;
 mod several_stiffness;
 mod shared;
@@ -69,7 +70,7 @@ use crate::info::Inspection;
 use crate::init::Init;
 use crate::load_matrix::{BallLoadsCommand, LoadMatrixCommand};
 use crate::mesh_command::MeshCommand;
-use crate::options::{Limits, Part, parse_part};
+use crate::options::{Limits, SweepPart, parse_part};
 use crate::pack::Pack;
 use crate::resume::ResumeRequest;
 use crate::stiffness::StiffnessCommand;
@@ -126,7 +127,7 @@ enum Command {
         out: Option<PathBuf>,
         /// Solves only these points of a sweep, the first from its own start: a number, or first-last, such as 0-9.
         #[arg(long, value_name = "POINTS", value_parser = parse_part)]
-        points: Option<Part>,
+        points: Option<SweepPart>,
         #[command(flatten)]
         limits: Limits,
     },

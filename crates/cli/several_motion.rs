@@ -12,7 +12,7 @@ use assembly::{Assembly, AssemblyMotion, AssemblySolver, AssemblyState};
 use comm::{Communicator, print};
 use dynamics::Model;
 use dynamics::costs::{EFFECTS, FACTOR};
-use results::cut::Cut;
+use results::cut::TableCut;
 use results::failure::{Failure, agree};
 use results::files::{Files, ResumedFrom};
 use results::memory::Forecasts;
@@ -221,7 +221,7 @@ fn resume_files(
 }
 
 /// Opens the tables beside the folders of the bearings; what stands after the step is moved aside.
-fn resume_tables(cuts: &[Cut], dir: &Path) -> Result<SeveralTables, Failure> {
+fn resume_tables(cuts: &[TableCut], dir: &Path) -> Result<SeveralTables, Failure> {
     if Communicator::world().is_root() {
         results::files::say_folder(dir);
     }

@@ -10,7 +10,7 @@ use crate::effects::Loads;
 use crate::effects::steady_balls::SteadyBalls;
 use crate::equilibrium::centre_unloaded;
 use crate::error::DynamicsError;
-use crate::footprint::{Footprint, loaded};
+use crate::footprint::{Footprint, loaded, sizes};
 use crate::interactions::raceway_contact::{Site, SiteState, on_rings};
 use crate::loading::LoadCase;
 use crate::model::Model;
@@ -347,7 +347,7 @@ fn edge_warnings(
     forces: &[[f64; 2]],
     balls: &[BallResult],
 ) -> Vec<String> {
-    let (mut warnings, loaded) = (Vec::new(), loaded(forces));
+    let (mut warnings, loaded) = (Vec::new(), loaded(sizes(forces)));
     for side in Side::BOTH {
         let is_beyond = |ball: &usize| match model.surfaces.edges(side) {
             Some(_) => balls[*ball].contact(side).ellipse == Some(EllipseKind::Edge),

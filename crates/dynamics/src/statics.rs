@@ -93,10 +93,7 @@ impl StaticSolver {
             let ring = model.ring(side);
             ring.map(|ring| StaticRing::new(model, side, ring)).transpose()
         };
-        let (inner, outer) = model
-            .backend
-            .try_both(|| build(Side::Inner), || build(Side::Outer))?;
-        let rings = [inner, outer];
+        let rings = model.backend.try_on_sides(build)?;
         let mut timing = Laps::default();
         for ring in rings.iter().flatten() {
             timing.merge(&ring.solver.laps);
@@ -281,8 +278,8 @@ impl StaticSolver {
             let columns = ring.solver.compliance(&weights);
             compliance::inverse(side, n, n / 2, &columns).map(Some)
         };
-        let (inner, outer) = backend.try_both(|| renewed(Side::Inner), || renewed(Side::Outer))?;
-        for (columns, new) in self.columns.iter_mut().zip([inner, outer]) {
+        let renewed = backend.try_on_sides(renewed)?;
+        for (columns, new) in self.columns.iter_mut().zip(renewed) {
             if new.is_some() {
                 *columns = new;
             }
@@ -311,10 +308,9 @@ impl StaticSolver {
             let seat = model.seat_motion(side);
             Some(ring.solver.solve_on(load, 1, seat.as_deref()))
         };
-        let both = model.backend.both(|| field(Side::Inner), || field(Side::Outer));
-        let (inner, outer) = both;
+        let fields = model.backend.on_sides(field);
         self.timing.add(SOLVE, clock.lap());
-        [inner, outer]
+        fields
     }
 
     /// How the rings answer at their contacts: the motions measured under these forces, and the columns.

@@ -128,10 +128,7 @@ pub fn require_same_meshes(scene: &Scene, texts: &BTreeMap<String, String>) -> a
 }
 
 fn flexible(scene: &Scene, side: Side) -> Option<&FlexibleRing> {
-    match side {
-        Side::Inner => scene.inner.body.as_ref(),
-        Side::Outer => scene.outer.body.as_ref(),
-    }
+    side.choose(scene.inner.body.as_ref(), scene.outer.body.as_ref())
 }
 
 fn mesh_key(side: Side) -> String {

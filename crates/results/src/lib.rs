@@ -50,6 +50,7 @@ pub mod summary;
 pub mod survey;
 pub mod table;
 mod tables;
+pub mod tilt;
 mod timed_near_field;
 pub mod watch;
 pub mod whole;

@@ -3,7 +3,7 @@
 use checkpoint::StepRecord;
 use dynamics::Model;
 use dynamics::motion::{Motion, MotionState};
-use scene::{Dynamic, KeptFields, Output, Scene};
+use scene::{Dynamic, KeptFields, OutputSettings, Scene};
 
 use super::fields::Places;
 use super::ring_stress::{Gathered, RingStress};
@@ -33,7 +33,7 @@ pub enum RestartState {
 impl RestartState {
     /// Of the file of a step that is written as the scene asks: every `output.restart_every`-th of them has the state,
     /// and that of the end.
-    pub fn at(step: u64, dynamic: &Dynamic, output: &Output) -> RestartState {
+    pub fn at(step: u64, dynamic: &Dynamic, output: &OutputSettings) -> RestartState {
         let every = dynamic.output_every.saturating_mul(output.restart_every);
         match step == dynamic.n_steps || step.is_multiple_of(every) {
             true => RestartState::Stored,

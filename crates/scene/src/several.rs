@@ -8,7 +8,7 @@ use dynamics::effects::{Loads, Now, Setting};
 use crate::build::{NodeTags, build_model, model_with_rings};
 use crate::error::BuildError;
 use crate::housing::{Rings, tie_together};
-use crate::tables::{Motion, ON_SHAFT, RigidShaft, Scene, SeveralScene, ShaftKind};
+use crate::tables::{ON_SHAFT, RigidShaft, Scene, SeveralScene, ShaftKind, ShaftMotion};
 
 /// The bearings of a scene on their shaft, and the numbers of the nodes of each in the mesh files. Reads the meshes of
 /// each type once.
@@ -111,9 +111,9 @@ fn rigid_shaft(rigid: &RigidShaft) -> ShaftBody {
         polar: rigid.polar,
     };
     let held = rigid.motions.map(|motion| match motion {
-        Motion::Free => None,
-        Motion::Locked => Some(0.0),
-        Motion::Prescribed(value) => Some(value),
+        ShaftMotion::Free => None,
+        ShaftMotion::Locked => Some(0.0),
+        ShaftMotion::Prescribed(value) => Some(value),
     });
     ShaftBody::rigid(inertia, held)
 }

@@ -52,8 +52,8 @@ mod symbolic;
 pub use bordered::Bordered;
 pub use cholesky::SparseCholesky;
 pub use cyclic::{
-    Coupling, CyclicBordered, CyclicCholesky, CyclicMatrix, CyclicRing, CyclicStencil, NodalLoad, Patch,
-    ResponseTable, SectionPart, Symmetry,
+    Coupling, CyclicBordered, CyclicCholesky, CyclicMatrix, CyclicRing, CyclicStencil, NodalLoad,
+    PatchWeights, ResponseTable, SectionPart, Symmetry,
 };
 pub use dissection::angular_dissection;
 pub use error::SolverError;

@@ -46,7 +46,7 @@ const PLAUSIBLE_CELSIUS: std::ops::RangeInclusive<f64> = -200.0..=350.0;
 /// The table of a scene.
 #[derive(Clone, Debug, Deserialize, PartialEq)]
 #[serde(deny_unknown_fields, expecting = "the table [effects.temperature]")]
-pub struct Table {
+pub struct TemperatureTable {
     inner: BodyTemperature,
     outer: BodyTemperature,
     balls: BodyTemperature,
@@ -61,7 +61,7 @@ pub struct Table {
 #[derive(Clone, Debug, PartialEq)]
 enum BodyTemperature {
     One(Temperature),
-    Table(BodyTable),
+    TemperatureTable(BodyTable),
 }
 
 /// Temperatures over time or radius.
@@ -90,7 +90,7 @@ enum Over {
     Radius(RadialProfile),
 }
 
-impl table::Table for Table {
+impl table::EffectTable for TemperatureTable {
     fn about() -> About {
         About {
             name: "temperature",
@@ -117,7 +117,7 @@ impl table::Table for Table {
             let key = format!("effects.temperature.{name}");
             match body {
                 BodyTemperature::One(temperature) => require_plausible(temperature, &key, problems),
-                BodyTemperature::Table(table) => {
+                BodyTemperature::TemperatureTable(table) => {
                     table.check(&key, matches!(name, "inner" | "outer"), context.clock, problems)
                 }
             }
@@ -160,7 +160,7 @@ impl BodyTemperature {
             BodyTemperature::One(temperature) => {
                 Over::Time(TemperatureSchedule::constant(temperature.kelvin()))
             }
-            BodyTemperature::Table(table) => table.over(),
+            BodyTemperature::TemperatureTable(table) => table.over(),
         }
     }
 
@@ -292,7 +292,7 @@ impl<'de> Deserialize<'de> for BodyTemperature {
             }
 
             fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<BodyTemperature, A::Error> {
-                BodyTable::deserialize(MapAccessDeserializer::new(map)).map(BodyTemperature::Table)
+                BodyTable::deserialize(MapAccessDeserializer::new(map)).map(BodyTemperature::TemperatureTable)
             }
         }
 

@@ -46,21 +46,21 @@ const QUALITY: f64 = 2.5e-3;
 /// The table of a scene.
 #[derive(Clone, Debug, Deserialize, PartialEq)]
 #[serde(deny_unknown_fields, expecting = "the table [effects.unbalance]")]
-pub struct Table {
+pub struct UnbalanceTable {
     mass: Quantity<MASS>,
     eccentricity: Quantity<LENGTH>,
     angle: Option<Quantity<ANGLE>>,
     position: Option<Quantity<LENGTH>>,
 }
 
-impl Table {
+impl UnbalanceTable {
     /// Mass times eccentricity, kg m.
     fn moment(&self) -> f64 {
         self.mass.si() * self.eccentricity.si()
     }
 }
 
-impl table::Table for Table {
+impl table::EffectTable for UnbalanceTable {
     fn about() -> About {
         About {
             name: "unbalance",
@@ -212,14 +212,14 @@ mod tests {
             has_lubricant: false,
         };
         let messages = |mass: &str, eccentricity: &str, position: &str| {
-            let table = Table {
+            let table = UnbalanceTable {
                 mass: mass.parse().unwrap(),
                 eccentricity: eccentricity.parse().unwrap(),
                 angle: None,
                 position: Some(position.parse().unwrap()),
             };
             let mut problems = Problems::default();
-            table::Table::check(&table, context, &mut problems);
+            table::EffectTable::check(&table, context, &mut problems);
             problems.into_texts()
         };
         assert!(messages("10 g", "5 mm", "-80 mm").is_empty());

@@ -6,6 +6,7 @@ use contact::patch_shape::is_truncated;
 use super::run::{Motion, MovingRing};
 use super::state::MotionState;
 use crate::footprint::loaded;
+use crate::footprint::sizes;
 use crate::solution::STATIC_LIMIT;
 use crate::surfaces::EllipseKind;
 
@@ -39,7 +40,7 @@ pub struct Exceeded {
 impl Motion<'_> {
     /// Contacts beyond a limit: mean forces of the last step, contact angles at its end.
     pub fn exceeded(&self, state: &MotionState) -> Vec<Exceeded> {
-        let carries = loaded(&state.forces);
+        let carries = loaded(sizes(&state.forces));
         let mut found = Vec::new();
         for (index, force) in state.forces.iter().enumerate().filter(|(i, _)| carries[*i]) {
             let (ball, side) = (index / 2, Side::BOTH[index % 2]);

@@ -6,14 +6,14 @@
 
 use std::sync::Arc;
 
-use super::factor::Shared;
-use super::layout::Place;
+use super::factor::SharedAnalysis;
+use super::layout::RowPlace;
 use super::reduction::starts;
 
 /// Solutions by sector: see the module.
 #[derive(Debug)]
 pub struct SectorColumns {
-    pub(super) shared: Arc<Shared>,
+    pub(super) shared: Arc<SharedAnalysis>,
     pub(super) n_columns: usize,
     /// Of the sectors owned, by places of their factors, row-major `[n_rows][n_columns]`.
     pub(super) local: Vec<Vec<f64>>,
@@ -39,7 +39,7 @@ impl SectorColumns {
         let owned = shared.owned();
         let (mut lengths, mut sent) = (vec![0; shares.len()], Vec::new());
         for &row in rows {
-            if let Place::Inside(s) = shared.layout.place(row) {
+            if let RowPlace::Inside(s) = shared.layout.place(row) {
                 lengths[rank_of[s]] += n;
                 if owned.contains(&s) {
                     sent.extend_from_slice(self.inside(s - owned.start, row));
@@ -51,10 +51,10 @@ impl SectorColumns {
         let mut values = Vec::with_capacity(n * rows.len());
         for &row in rows {
             match shared.layout.place(row) {
-                Place::Shared(place) => {
+                RowPlace::Shared(place) => {
                     values.extend_from_slice(&self.interface[n * place..n * (place + 1)]);
                 }
-                Place::Inside(s) => {
+                RowPlace::Inside(s) => {
                     let at = &mut next[rank_of[s]];
                     values.extend_from_slice(&all[*at..*at + n]);
                     *at += n;

@@ -16,15 +16,15 @@ use std::sync::Arc;
 use rayon::prelude::*;
 
 use super::columns::SectorColumns;
-use super::factor::{SectorCholesky, Shared};
-use super::layout::Place;
-use super::solve::Loads;
+use super::factor::{SectorCholesky, SharedAnalysis};
+use super::layout::RowPlace;
+use super::solve::RightHandSides;
 use crate::linear_solver::SparseVector;
 
 /// Right-hand sides half way: see the module.
 #[derive(Debug)]
 pub struct SectorHalves {
-    shared: Arc<Shared>,
+    shared: Arc<SharedAnalysis>,
     n_columns: usize,
     /// y of the sectors owned.
     local: Vec<Swept>,
@@ -51,7 +51,7 @@ impl SectorCholesky {
     /// # Panics
     /// When `dense.len()` is no multiple of n.
     pub fn halves(&self, dense: &[f64], sparse: &[SparseVector]) -> [SectorHalves; 2] {
-        let loads = Loads::new(self, dense, sparse);
+        let loads = RightHandSides::new(self, dense, sparse);
         let sweep = |i: usize| [self.sweep_dense(i, loads), self.sweep_sparse(i, sparse)];
         let mut swept: Vec<[Swept; 2]> = (0..self.parts.len()).into_par_iter().map(sweep).collect();
         let (n_dense, n_columns) = (loads.n_dense, loads.n_rhs());
@@ -86,7 +86,7 @@ impl SectorCholesky {
     }
 
     /// All dense right-hand sides in the i-th sector owned.
-    fn sweep_dense(&self, i: usize, loads: Loads<'_>) -> Swept {
+    fn sweep_dense(&self, i: usize, loads: RightHandSides<'_>) -> Swept {
         let (sector, places) = (&self.shared.own_sectors()[i], &self.shared.parts[i].places);
         let n_rhs = loads.n_dense;
         let mut x = vec![0.0; n_rhs * sector.n_rows()];
@@ -103,7 +103,7 @@ impl SectorCholesky {
     fn sweep_sparse(&self, i: usize, loads: &[SparseVector]) -> Swept {
         let s = self.shared.owned().start + i;
         let (sector, places) = (&self.shared.own_sectors()[i], &self.shared.parts[i].places);
-        let inside = |&&(row, _): &&(usize, f64)| self.shared.layout.place(row) == Place::Inside(s);
+        let inside = |&&(row, _): &&(usize, f64)| self.shared.layout.place(row) == RowPlace::Inside(s);
         let touching = |r: &usize| loads[*r].iter().any(|entry| inside(&entry));
         let columns: Vec<usize> = (0..loads.len()).filter(touching).collect();
         let n_rhs = columns.len();

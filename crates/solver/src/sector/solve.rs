@@ -4,13 +4,13 @@ use rayon::prelude::*;
 
 use super::columns::SectorColumns;
 use super::factor::SectorCholesky;
-use super::layout::Place;
+use super::layout::RowPlace;
 use super::part::Part;
 use crate::linear_solver::{LinearSolver, SparseVector};
 
 /// Right-hand sides: dense ones, column-major `[n][..]`, then sparse ones.
 #[derive(Clone, Copy)]
-pub(super) struct Loads<'a> {
+pub(super) struct RightHandSides<'a> {
     pub(super) dense: &'a [f64],
     pub(super) sparse: &'a [SparseVector],
     pub(super) n_dense: usize,
@@ -19,13 +19,17 @@ pub(super) struct Loads<'a> {
 /// Columns that are put in place together.
 const GROUP: usize = 8;
 
-impl<'a> Loads<'a> {
+impl<'a> RightHandSides<'a> {
     /// # Panics
     /// When `dense.len()` is no multiple of n.
-    pub(super) fn new(of: &SectorCholesky, dense: &'a [f64], sparse: &'a [SparseVector]) -> Loads<'a> {
+    pub(super) fn new(
+        of: &SectorCholesky,
+        dense: &'a [f64],
+        sparse: &'a [SparseVector],
+    ) -> RightHandSides<'a> {
         let n = of.n().max(1);
         assert!(dense.len().is_multiple_of(n), "right-hand sides of {n} rows");
-        Loads {
+        RightHandSides {
             dense,
             sparse,
             n_dense: dense.len() / n,
@@ -73,7 +77,7 @@ impl SectorCholesky {
     /// # Panics
     /// When `dense.len()` is no multiple of n.
     pub fn columns(&self, dense: &[f64], sparse: &[SparseVector]) -> SectorColumns {
-        let loads = Loads::new(self, dense, sparse);
+        let loads = RightHandSides::new(self, dense, sparse);
         let n_rhs = loads.n_rhs();
         if n_rhs == 0 {
             return SectorColumns {
@@ -116,7 +120,7 @@ impl SectorCholesky {
     }
 
     /// y and -F y of the sectors owned, by places, `[n_rows][n_rhs]` each.
-    fn forward(&self, loads: Loads<'_>) -> Vec<Vec<f64>> {
+    fn forward(&self, loads: RightHandSides<'_>) -> Vec<Vec<f64>> {
         let (n, n_rhs) = (self.n(), loads.n_rhs());
         let first = self.shared.owned().start;
         let forward = |(i, part): (usize, &Part)| {
@@ -133,7 +137,7 @@ impl SectorCholesky {
             }
             for (r, load) in loads.sparse.iter().enumerate() {
                 for &(row, value) in load {
-                    if self.shared.layout.place(row) == Place::Inside(first + i) {
+                    if self.shared.layout.place(row) == RowPlace::Inside(first + i) {
                         let place = places[sector.inside(row)] as usize;
                         x[n_rhs * place + loads.n_dense + r] += value;
                     }
@@ -147,7 +151,7 @@ impl SectorCholesky {
 
     /// What reaches the interface, `[places][n_rhs]`, on all ranks: loads, and `-F y` of the boundaries of the sectors
     /// owned, `[n_rhs]` for each of their rows.
-    pub(super) fn interface_loads(&self, loads: Loads<'_>, boundaries: Vec<f64>) -> Vec<f64> {
+    pub(super) fn interface_loads(&self, loads: RightHandSides<'_>, boundaries: Vec<f64>) -> Vec<f64> {
         let (shared, n, n_rhs) = (&self.shared, self.n(), loads.n_rhs());
         let lengths = shared.lengths(|s| n_rhs * s.boundary.len());
         let all = shared.comm.all_gather(boundaries, &lengths);
@@ -159,7 +163,7 @@ impl SectorCholesky {
         }
         for (r, load) in loads.sparse.iter().enumerate() {
             for &(row, value) in load {
-                if let Place::Shared(place) = shared.layout.place(row) {
+                if let RowPlace::Shared(place) = shared.layout.place(row) {
                     x[n_rhs * place + loads.n_dense + r] += value;
                 }
             }
@@ -205,8 +209,8 @@ impl SectorCholesky {
             let mut group: Vec<&mut [f64]> = group.chunks_exact_mut(n).collect();
             shared.layout.each_row(|row, place| {
                 let (values, place) = match place {
-                    Place::Inside(place) => (&all, place),
-                    Place::Shared(place) => (&columns.interface, place),
+                    RowPlace::Inside(place) => (&all, place),
+                    RowPlace::Shared(place) => (&columns.interface, place),
                 };
                 let values = &values[n_rhs * place + GROUP * g..n_rhs * (place + 1)];
                 group

@@ -13,14 +13,14 @@ use toml_edit::{DocumentMut, Item, Table, Value};
 
 use super::super::messages::Messages;
 use super::super::ring::MeshFiles;
-use super::super::{Scene, SceneError, Source, edit, include};
+use super::super::{Scene, SceneError, TextSource, edit, include};
 use super::bodies;
 use super::mounted::{BearingOnShaft, RawMounted, check_places};
 use super::pairing::Pairing;
 use super::shaft::{CommonShaft, ShaftKind};
 use super::turned::{turn_region, turn_speed, turn_speeds, turn_weight};
 use super::{OF_TYPE, ON_SHAFT, RawSeveral, SeveralScene, is_of_type, set};
-use crate::tables::shaft::Motion;
+use crate::tables::shaft::ShaftMotion;
 
 /// Tables of the list that no bearing has, or that are given to it apart, or that a list is refused with.
 const OF_LIST: [&str; 15] = [
@@ -243,7 +243,7 @@ impl Composer<'_> {
             .whole
             .with_type((&bearing.name, &bearing.r#type), &OF_TYPE, is_shared)
             .map_err(|error| self.at_bearing(error))?;
-        let source = Source {
+        let source = TextSource {
             path: self.path,
             overrides: self.overrides,
             mesh_files: self.mesh_files,
@@ -383,7 +383,8 @@ fn copy_shared(list: &DocumentMut, document: &mut DocumentMut, left_out: &[&str]
 
 /// Bearings lie on the shaft.
 fn check_ends(raw: &[RawMounted], scenes: &[Option<Scene>], shaft: &CommonShaft, problems: &mut Problems) {
-    let ([first, last], text) = shaft.ends();
+    let (ends, text) = shaft.ends();
+    let (first, last) = ends.into_inner();
     for (bearing, scene) in raw.iter().zip(scenes) {
         let Some(scene) = scene else { continue };
         let slack = scene.bearing.inner_groove_radius - 0.5 * scene.bearing.ball_diameter;
@@ -407,7 +408,7 @@ fn check_ends(raw: &[RawMounted], scenes: &[Option<Scene>], shaft: &CommonShaft,
 /// Something holds the shaft along z.
 fn check_axis(raw: &[RawMounted], pairing: &Pairing, shaft: &CommonShaft, problems: &mut Problems) {
     let is_free = match &shaft.kind {
-        ShaftKind::Rigid(rigid) => rigid.motions[2] == Motion::Free,
+        ShaftKind::Rigid(rigid) => rigid.motions[2] == ShaftMotion::Free,
         ShaftKind::Beam(_) => true,
     };
     let fixed = raw.len() - usize::from(pairing.spring.is_some());

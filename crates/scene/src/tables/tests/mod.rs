@@ -27,7 +27,7 @@ mod several_bodies;
 mod slips;
 mod sweeps;
 
-use dynamics::effects::Table as _;
+use dynamics::effects::EffectTable as _;
 use std::path::Path;
 
 use input::Schedule;

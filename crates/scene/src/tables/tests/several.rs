@@ -139,7 +139,7 @@ fn the_example_is_a_list() {
         rear.scene.bearing.balls,
         parse(EXAMPLE, &[]).unwrap().bearing.balls
     );
-    assert_eq!(rear.scene.shaft.z, Motion::Prescribed(0.0));
+    assert_eq!(rear.scene.shaft.z, ShaftMotion::Prescribed(0.0));
 }
 
 /// Wrong: a bearing that is turned would feel weight, spin or a load of the shaft as one that is not.
@@ -247,8 +247,8 @@ fn a_bearing_of_a_list_can_be_put_where_its_shaft_is() {
     let scene = lists.several(&list(BEAM, ""), &[]);
     let q = [1.25e-6, -3e-7, 1.0 / 3.0 * 1e-5, 2e-5, -1e-6];
     let placed = scene.bearings[1].scene.with_shaft_at(q).unwrap();
-    assert_eq!(placed.shaft.z, Motion::Prescribed(q[2]));
-    assert_eq!(placed.shaft.tilt_y, Motion::Prescribed(q[4]));
+    assert_eq!(placed.shaft.z, ShaftMotion::Prescribed(q[2]));
+    assert_eq!(placed.shaft.tilt_y, ShaftMotion::Prescribed(q[4]));
     let again = Scene::parse(&placed.text, &placed.path, &[], MeshFiles::MayBeMissing).unwrap();
     assert_eq!(again.shaft, placed.shaft);
 }
