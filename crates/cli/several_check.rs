@@ -73,11 +73,15 @@ fn print_analysis(scene: &SeveralScene) {
             "analysis dynamic: {} steps of {} s, a step file of each bearing every {}",
             dynamic.n_steps, dynamic.step, dynamic.output_every
         )),
+        Analysis::QuasiStatic(settings) => print::line(format_args!(
+            "analysis quasi-static: {} steps of {} s, a step file of each bearing every {}",
+            settings.n_steps, settings.step, settings.output_every
+        )),
         Analysis::Modes(wanted) => print::line(format_args!(
             "analysis modes, the {} lowest of all bearings with their shaft",
             wanted.number
         )),
-        _ => print::line(format_args!("analysis static")),
+        Analysis::Static => print::line(format_args!("analysis static")),
     }
 }
 
