@@ -50,6 +50,7 @@ mod schedules;
 mod sectors;
 mod several;
 mod several_modes;
+mod several_quasi_static;
 mod shared_housing;
 mod signals;
 mod small_files;

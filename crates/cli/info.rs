@@ -92,14 +92,34 @@ fn range(values: impl Iterator<Item = f64>) -> [f64; 2] {
     })
 }
 
-fn line(name: &str, text: &str) {
+/// Prints a line with its name.
+pub fn line(name: &str, text: &str) {
     // A long name is followed by a space, too.
     let name = format!("{name} ");
     print::line(format_args!("{name:<11}{text}"));
 }
 
+/// What a folder was found to hold.
+pub struct Inspected {
+    /// Numbers of its sound steps.
+    pub steps: Vec<u64>,
+    /// What is damaged.
+    pub damaged: Vec<String>,
+}
+
 fn folder(dir: &Path, depth: Inspection) -> Result<(), Failure> {
-    plot::require_one_bearing(dir)?;
+    let Inspected { steps, damaged } = inspect(dir, depth)?;
+    answer::add_results(dir);
+    answer::add("steps", steps);
+    answer::add("damaged", &damaged);
+    match damaged.len() {
+        0 => Ok(()),
+        n => Err(anyhow!("{n} files of {} are damaged", dir.display()).into()),
+    }
+}
+
+/// Prints what the folder of a bearing holds, damage too.
+pub fn inspect(dir: &Path, depth: Inspection) -> Result<Inspected, Failure> {
     let steps = committed_steps(dir)?;
     line("folder", &dir.display().to_string());
     let (mut damaged, mut sound, mut states, mut bytes) = (Vec::new(), Vec::new(), Vec::new(), 0);
@@ -142,16 +162,13 @@ fn folder(dir: &Path, depth: Inspection) -> Result<(), Failure> {
     lines_of_packs(dir)?;
     damaged.extend(doubts(dir)?);
     folder_state(dir)?;
-    answer::add_results(dir);
-    answer::add("steps", sound.iter().map(|(step, _)| step).collect::<Vec<_>>());
-    answer::add("damaged", &damaged);
     for text in &damaged {
         line("damaged", text);
     }
-    match damaged.len() {
-        0 => Ok(()),
-        n => Err(anyhow!("{n} files of {} are damaged", dir.display()).into()),
-    }
+    Ok(Inspected {
+        steps: sound.iter().map(|(step, _)| *step).collect(),
+        damaged,
+    })
 }
 
 /// How many steps there are, and of which times; `sound` are numbers and times, s.

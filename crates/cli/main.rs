@@ -32,12 +32,17 @@ mod run;
 mod several;
 mod several_campbell;
 mod several_check;
+mod several_files;
+mod several_info;
 mod several_ledger;
 mod several_modes;
 mod several_motion;
+mod several_quasi_state;
+mod several_quasi_static;
 mod several_read;
 mod several_ready;
 mod several_rest;
+mod several_resume;
 mod several_state;
 mod several_stiffness;
 mod shared;
@@ -382,7 +387,7 @@ fn execute(arguments: Arguments) -> Result<(), Failure> {
         }
         Command::Resume(request) => {
             match several_state::is_list(&request.dir)? {
-                true => several_motion::resume_run(
+                true => several_resume::resume_run(
                     &request.dir,
                     request.step,
                     request.changes(),
@@ -396,14 +401,16 @@ fn execute(arguments: Arguments) -> Result<(), Failure> {
         Command::Gmsh { .. } | Command::Help { .. } | Command::Completions { .. } | Command::Man { .. } => {
             unreachable!("they need no ranks and threads")
         }
-        Command::Info { path, verify } => info::info(
-            &path,
-            if verify {
-                Inspection::Bytes
-            } else {
-                Inspection::Structure
-            },
-        ),
+        Command::Info { path, verify } => {
+            let depth = match verify {
+                true => Inspection::Bytes,
+                false => Inspection::Structure,
+            };
+            match path.is_dir() && !plot::bearings(&path)?.is_empty() {
+                true => several_info::info(&path, depth),
+                false => info::info(&path, depth),
+            }
+        }
         Command::Init(request) => init::init(&request),
         Command::Pack(request) => pack::pack(&request),
         Command::Cycles(request) => cycles::cycles(&request),

@@ -27,7 +27,7 @@ use crate::progress::Progress;
 use crate::quasi_static;
 use crate::remarks::Remarks;
 use crate::shared::note_unshared;
-use crate::{several, several_modes, several_motion, several_rest};
+use crate::{several, several_modes, several_motion, several_quasi_static, several_rest};
 
 /// One load case of a run: the swept value (None for a static scene) and its scene.
 pub type SweptScene = (Option<f64>, Scene);
@@ -247,8 +247,9 @@ fn run_list(
     note_unshared(&list.bearings[0].scene);
     match &list.analysis {
         Analysis::Dynamic(dynamic) => several_motion::run(list, dynamic, &dir, limits, start)?,
+        Analysis::QuasiStatic(settings) => several_quasi_static::run(list, settings, &dir, limits, start)?,
         Analysis::Modes(wanted) => several_modes::run(list, wanted, &dir, limits, start)?,
-        _ => several_rest::run(list, &dir, start)?,
+        Analysis::Static | Analysis::Sweep(_) => several_rest::run(list, &dir, start)?,
     }
     Ok(dir)
 }

@@ -27,7 +27,7 @@ pub mod stiffness;
 pub mod support;
 pub mod whirl;
 
-pub use assembly::{Assembly, AssemblySolution, AssemblySolver};
+pub use assembly::{Assembly, AssemblySolution, AssemblySolver, AssemblyStart};
 pub use beam::{BeamSection, BeamShaft, PointMass};
 pub use error::AssemblyError;
 pub use housing::HousedTogether;

@@ -157,6 +157,16 @@ impl StaticSolver {
         pose: &Pose,
         start: Option<&StaticSolution>,
     ) -> Result<StaticSolution, DynamicsError> {
+        self.solve_from(model, pose, start.map(|solution| &solution.displacements))
+    }
+
+    /// The same from the displacements of an earlier solution, of which nothing else is needed.
+    pub fn solve_from(
+        &mut self,
+        model: &Model,
+        pose: &Pose,
+        start: Option<&Displacements>,
+    ) -> Result<StaticSolution, DynamicsError> {
         let u = self.start(model, pose.now.time, start);
         let mut case = LoadCase::new(model, *pose, &self.costs, &u)?;
         let mut clock = Stopwatch::start();
@@ -177,10 +187,10 @@ impl StaticSolver {
     }
 
     /// Displacements to start from.
-    fn start(&self, model: &Model, time: f64, start: Option<&StaticSolution>) -> Displacements {
+    fn start(&self, model: &Model, time: f64, start: Option<&Displacements>) -> Displacements {
         let flexible = [self.rings[0].is_some(), self.rings[1].is_some()];
         let mut u = match start {
-            Some(solution) => solution.displacements.clone(),
+            Some(earlier) => earlier.clone(),
             None => Displacements::zero(model.geometry.n_balls, flexible),
         };
         for (i, q) in u.shaft.iter_mut().enumerate() {

@@ -131,7 +131,8 @@ impl Files {
         Ok(files)
     }
 
-    /// Opens the files of a locked folder to go on after its step `last`. Collective.
+    /// Opens the files of a locked folder, of a run or of a part of it, to go on after a step; whoever knows which says
+    /// where they are. Collective.
     pub fn resume(
         scene: &Scene,
         model: &Model,
@@ -164,7 +165,6 @@ impl Files {
         let mesh = mesh.map_or_else(|| mesh_file(scene, model), Ok)?;
         let opened = Output::resume_of(lock, &mesh, storage(scene), last)?;
         drop(mesh);
-        say_folder(&dir);
         let (mut output, damaged, mut superseded) = (opened.output, opened.damaged, opened.superseded);
         output.describe(texts)?;
         folder::note_restored(opened.mesh_restored, &dir);

@@ -33,6 +33,7 @@ pub mod probes;
 pub mod rainflow;
 pub mod reduction;
 mod region;
+pub mod rest_state;
 mod ring_stress;
 pub mod seat;
 pub mod several;

@@ -1,4 +1,4 @@
-//! Fields of one instant of a motion; the state of the run is stored beside, bit for bit.
+//! Fields of one instant of a motion, or of an equilibrium in time; the state of the run is stored beside, bit for bit.
 
 use checkpoint::StepRecord;
 use dynamics::Model;
@@ -62,6 +62,23 @@ impl Recorded {
                 RestartState::Stored => state_arrays::store(state, &motion.shape()),
                 RestartState::Left => Arrays::new(),
             },
+            scene: scene.text.clone(),
+        })
+    }
+
+    /// The same of an equilibrium at a step and its time, s, with the arrays of `state` beside its fields.
+    pub fn of_equilibrium(
+        shown: &Shown<'_>,
+        (step, time): (u64, f64),
+        gathered: Gathered,
+        (scene, kept): (&Scene, KeptFields),
+        state: Arrays,
+    ) -> Result<Recorded, Failure> {
+        Ok(Recorded {
+            step,
+            time,
+            places: Places::new(shown, gathered, scene, kept)?,
+            state,
             scene: scene.text.clone(),
         })
     }

@@ -407,6 +407,7 @@ impl SeveralSummary {
             version: env!("CARGO_PKG_VERSION"),
             analysis: match scene.analysis {
                 Analysis::Sweep(_) => "sweep",
+                Analysis::QuasiStatic(_) => "quasi_static",
                 Analysis::Dynamic(_) => "dynamic",
                 Analysis::Modes(_) => "modes",
                 _ => "static",

@@ -4,6 +4,7 @@
 mod modes;
 mod shaft;
 mod stiffness;
+mod turning;
 
 use std::collections::BTreeMap;
 use std::sync::Arc;

@@ -48,9 +48,9 @@ impl GravityTable {
         self.direction.map(|d| g * d / length)
     }
 
-    /// The same at a time, s.
-    pub fn acceleration_at(&self, time: f64) -> [f64; 3] {
-        let factor = table::EffectTable::schedule(self).at(time);
+    /// The same at an instant, or its mean over an interval.
+    pub fn acceleration_at(&self, now: &Now<'_>) -> [f64; 3] {
+        let factor = now.factor(&table::EffectTable::schedule(self));
         self.acceleration().map(|g| factor * g)
     }
 

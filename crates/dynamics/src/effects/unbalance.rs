@@ -7,8 +7,9 @@
 //! ```
 //!
 //! Omega the speed of the inner ring and A its acceleration. Off the plane of the inner groove centres it also tilts,
-//! by position e_z x F. The mass itself is part of `shaft.mass`; its motion with the shaft is the shaft's own inertia
-//! (e.g. Genta, Dynamics of Rotating Systems, 2005, ch. 2: the Jeffcott rotor).
+//! by position e_z x F; on the shaft of a list of bearings it pulls where it is. The mass itself is part of
+//! `shaft.mass`; its motion with the shaft is the shaft's own inertia (e.g. Genta, Dynamics of Rotating Systems, 2005,
+//! ch. 2: the Jeffcott rotor).
 //!
 //! The mean over a step of a motion is exact for any course of the speed: it is the change of m e d/dt (cos psi, sin
 //! psi) over the step, so shaft and mass together keep their momentum to round-off. An equilibrium has the force of
@@ -33,7 +34,8 @@ const EXAMPLE: &str = r#"[effects.unbalance]             # needs [speed]
 mass = "10 g"                   # a mass off the axis; it is part of shaft.mass
 eccentricity = "5 mm"           # its distance from the axis: together 50 g mm
 angle = "0 deg"                 # optional: its azimuth on the inner ring at t = 0, from +x towards +y; default 0
-position = "0 mm"               # optional: where on the axis, from the plane of the inner groove centres; default 0
+position = "0 mm"               # optional: where on the axis, from the plane of the inner groove centres, or along
+                                # the shaft of a list of bearings; default 0
 "#;
 
 /// A heavier mass off the axis is a slip of the unit, kg.
@@ -54,6 +56,11 @@ pub struct UnbalanceTable {
 }
 
 impl UnbalanceTable {
+    /// Where on the axis it is, m: from the plane of the inner groove centres, or along the shaft of several bearings.
+    pub fn position(&self) -> f64 {
+        self.position.as_ref().map_or(0.0, Quantity::si)
+    }
+
     /// Mass times eccentricity, kg m.
     fn moment(&self) -> f64 {
         self.mass.si() * self.eccentricity.si()
@@ -127,7 +134,7 @@ impl table::EffectTable for UnbalanceTable {
             speed: setting.speeds.inner.clone(),
             moment: self.moment(),
             angle: self.angle.as_ref().map_or(0.0, Quantity::si),
-            position: self.position.as_ref().map_or(0.0, Quantity::si),
+            position: self.position(),
         })))
     }
 

@@ -13,6 +13,7 @@ use toml_edit::{DocumentMut, Item, Table, Value};
 
 use super::super::messages::Messages;
 use super::super::ring::MeshFiles;
+use super::super::speed::RawSpeed;
 use super::super::{Scene, SceneError, TextSource, edit, include};
 use super::bodies;
 use super::mounted::{BearingOnShaft, RawMounted, check_places};
@@ -40,6 +41,9 @@ const OF_LIST: [&str; 15] = [
     "heat",
     "lubricant",
 ];
+/// Analyses over time, which every bearing has as the list has them.
+const OVER_TIME: [&str; 2] = ["quasi_static", "dynamic"];
+
 /// What a list is made into scenes with.
 pub struct Composer<'a> {
     pub path: &'a Path,
@@ -64,7 +68,7 @@ impl Composer<'_> {
         let pairing = pairing.unwrap_or_default();
         let at_rest = raw.analysis(document, &mut problems);
         let (scenes, told) = self.scenes(&raw, document, &pairing)?;
-        let analysis = match raw.dynamic.is_some() || raw.modes.is_some() {
+        let analysis = match raw.has_time() || raw.modes.is_some() {
             true => scenes.iter().flatten().map(|s| s.analysis.clone()).next(),
             false => at_rest,
         };
@@ -75,6 +79,7 @@ impl Composer<'_> {
         if let Some(shaft) = &shaft {
             check_ends(&raw.bearing, &scenes, shaft, &mut problems);
             check_axis(&raw.bearing, &pairing, shaft, &mut problems);
+            check_unbalance(&raw, shaft, &mut problems);
         }
         let is_sound = problems.is_empty() && told.is_empty();
         let scenes: Option<Vec<Scene>> = scenes.into_iter().collect();
@@ -199,9 +204,11 @@ impl Composer<'_> {
                 set(document, &format!("shaft.{key}"), &format!("\"0 {unit}\""));
             }
             set(document, "shaft.load_point", "\"0 m\"");
-            if let Some(dynamic) = list.get("dynamic") {
-                document.insert("dynamic", dynamic.clone());
-                return;
+            for name in OVER_TIME {
+                if let Some(analysis) = list.get(name) {
+                    document.insert(name, analysis.clone());
+                    return;
+                }
             }
             edit::remove_series(document);
             match list.get("modes") {
@@ -321,15 +328,15 @@ fn check_list(raw: &RawSeveral, problems: &mut Problems) {
     }
 }
 
-/// Refuses tables of `[output]` that a list has in motion only.
+/// Refuses tables of `[output]` that a list has over time only.
 fn check_output(raw: &RawSeveral, list: &DocumentMut, problems: &mut Problems) {
     let output = list.get("output").and_then(Item::as_table_like);
-    let output = output.filter(|_| raw.dynamic.is_none());
+    let output = output.filter(|_| !raw.has_time());
     let given = |name: &&str| output.is_some_and(|output| output.contains_key(name));
     for name in edit::OF_SERIES.into_iter().filter(given) {
         problems.add(format!(
-            "[output.{name}] is for a list of bearings in motion, [dynamic], only: at rest every bearing has its own \
-             [static] or [modes] files; remove it"
+            "[output.{name}] is for a list of bearings over time, [quasi_static] or [dynamic], only: at rest every \
+             bearing has its own [static] or [modes] files; remove it"
         ));
     }
 }
@@ -340,15 +347,16 @@ fn check_loads(raw: &RawSeveral, problems: &mut Problems) {
         axial_force: raw.effects.axial_force.clone(),
         radial_force: raw.effects.radial_force.clone(),
         moment: raw.effects.moment.clone(),
+        unbalance: raw.effects.unbalance.clone(),
         ..Effects::default()
     };
     let context = Context {
         is_without_inertia: raw.dynamic.is_none(),
-        clock: match raw.dynamic {
-            Some(_) => Clock::Running,
-            None => Clock::AtRest,
+        clock: match raw.has_time() {
+            true => Clock::Running,
+            false => Clock::AtRest,
         },
-        has_speed: [false; 2],
+        has_speed: raw.speed.as_ref().map_or([false; 2], RawSpeed::has),
         is_flexible: [false; 2],
         seat_diameters: [None; 2],
         has_expansion: [true; 2],
@@ -402,6 +410,21 @@ fn check_ends(raw: &[RawMounted], scenes: &[Option<Scene>], shaft: &CommonShaft,
                 1e3 * scene.bearing.width
             ));
         }
+    }
+}
+
+/// The mass off the axis is on the shaft.
+fn check_unbalance(raw: &RawSeveral, shaft: &CommonShaft, problems: &mut Problems) {
+    let Some(unbalance) = &raw.effects.unbalance else {
+        return;
+    };
+    let (ends, text) = shaft.ends();
+    let at = unbalance.position();
+    if !ends.contains(&at) {
+        problems.add(format!(
+            "effects.unbalance.position is {:.3} mm, which is off the shaft; expected {text}",
+            1e3 * at
+        ));
     }
 }
 

@@ -24,6 +24,7 @@ mod ring_inertia;
 mod schedules;
 mod several;
 mod several_bodies;
+mod several_over_time;
 mod slips;
 mod sweeps;
 
