@@ -62,8 +62,8 @@ pub use permutation::{expand, restrict_order};
 pub use products::products;
 pub use refinement::{Refined, solve_refined};
 pub use sector::{
-    BorderedColumns, Points, Sector, SectorBordered, SectorCholesky, SectorColumns, SectorCost, SectorCut,
-    SectorLayout, SectorSymbolic, default_sectors,
+    BorderedHalves, Points, Sector, SectorBordered, SectorCholesky, SectorColumns, SectorCost, SectorCut,
+    SectorHalves, SectorLayout, SectorSymbolic, default_sectors,
 };
 pub use submatrix::{restrict, restrict_lower};
 pub use symbolic::Symbolic;

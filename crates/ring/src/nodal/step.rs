@@ -56,7 +56,6 @@ impl<S: NodalSolver> NodalFactor<S> {
         let [m, k] = held.history(self.scheme);
         let (v, a) = (state.velocity(), state.acceleration());
         let vectors = StateVectors {
-            displacement: state.displacement(),
             velocity: v,
             strained: held.without_rigid_motion(state.displacement()),
             inertial: combined(m, v, a),
