@@ -61,7 +61,7 @@ pub struct TemperatureTable {
 #[derive(Clone, Debug, PartialEq)]
 enum BodyTemperature {
     One(Temperature),
-    TemperatureTable(BodyTable),
+    Table(BodyTable),
 }
 
 /// Temperatures over time or radius.
@@ -117,7 +117,7 @@ impl table::EffectTable for TemperatureTable {
             let key = format!("effects.temperature.{name}");
             match body {
                 BodyTemperature::One(temperature) => require_plausible(temperature, &key, problems),
-                BodyTemperature::TemperatureTable(table) => {
+                BodyTemperature::Table(table) => {
                     table.check(&key, matches!(name, "inner" | "outer"), context.clock, problems)
                 }
             }
@@ -160,7 +160,7 @@ impl BodyTemperature {
             BodyTemperature::One(temperature) => {
                 Over::Time(TemperatureSchedule::constant(temperature.kelvin()))
             }
-            BodyTemperature::TemperatureTable(table) => table.over(),
+            BodyTemperature::Table(table) => table.over(),
         }
     }
 
@@ -292,7 +292,7 @@ impl<'de> Deserialize<'de> for BodyTemperature {
             }
 
             fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<BodyTemperature, A::Error> {
-                BodyTable::deserialize(MapAccessDeserializer::new(map)).map(BodyTemperature::TemperatureTable)
+                BodyTable::deserialize(MapAccessDeserializer::new(map)).map(BodyTemperature::Table)
             }
         }
 

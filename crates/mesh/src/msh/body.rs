@@ -72,7 +72,7 @@ pub(crate) fn select_body(raw: &RawMsh, path: &Path, wanted: &Wanted) -> Result<
         .nodes
         .iter()
         .enumerate()
-        .filter(|(i, _)| used[*i] == Use::MeshBody)
+        .filter(|(i, _)| used[*i] == Use::Body)
     {
         index[i] = nodes.len();
         node_tags.push(node.0);
@@ -153,7 +153,7 @@ enum Use {
     Nothing,
     Construction,
     OtherBody,
-    MeshBody,
+    Body,
 }
 
 /// Checks that all elements name nodes that exist and that all nodes are used by an element of the dimension.
@@ -168,7 +168,7 @@ fn check_nodes(
     for block in &raw.blocks {
         let is_body = block.physical.iter().any(|p| numbers.contains(p));
         let mark = match (block.dimension == wanted.dimension, is_body) {
-            (true, true) => Use::MeshBody,
+            (true, true) => Use::Body,
             (true, false) => Use::OtherBody,
             (false, _) => Use::Nothing,
         };

@@ -163,7 +163,7 @@ impl RawRing {
         problems: &mut Problems,
         assumed: &mut Vec<String>,
     ) -> Option<RingInertia> {
-        let InertiaSource::MeshedSection = self.inertia?;
+        let InertiaSource::Section = self.inertia?;
         if ring == RingName::Outer {
             problems.add(ring_inertia::OF_OUTER);
             return None;

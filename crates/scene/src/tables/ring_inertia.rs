@@ -15,7 +15,7 @@ use serde::Deserialize;
 #[serde(rename_all = "snake_case")]
 pub enum InertiaSource {
     /// From its section and density.
-    MeshedSection,
+    Section,
 }
 
 /// Mass and moments of inertia of a rigid ring about the axis point.
