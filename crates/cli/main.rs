@@ -52,7 +52,7 @@ mod stored;
 
 use std::ffi::OsString;
 use std::os::unix::process::CommandExt;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
@@ -370,6 +370,18 @@ fn prepare(arguments: &Arguments) -> Result<(), Failure> {
     Ok(())
 }
 
+/// What a file or folder holds; with `verify` its bytes are read too.
+fn info_of(path: &Path, verify: bool) -> Result<(), Failure> {
+    let depth = match verify {
+        true => Inspection::Bytes,
+        false => Inspection::Structure,
+    };
+    match path.is_dir() && !plot::bearings(path)?.is_empty() {
+        true => several_info::info(path, depth),
+        false => info::info(path, depth),
+    }
+}
+
 fn execute(arguments: Arguments) -> Result<(), Failure> {
     prepare(&arguments)?;
     match arguments.command {
@@ -401,16 +413,7 @@ fn execute(arguments: Arguments) -> Result<(), Failure> {
         Command::Gmsh { .. } | Command::Help { .. } | Command::Completions { .. } | Command::Man { .. } => {
             unreachable!("they need no ranks and threads")
         }
-        Command::Info { path, verify } => {
-            let depth = match verify {
-                true => Inspection::Bytes,
-                false => Inspection::Structure,
-            };
-            match path.is_dir() && !plot::bearings(&path)?.is_empty() {
-                true => several_info::info(&path, depth),
-                false => info::info(&path, depth),
-            }
-        }
+        Command::Info { path, verify } => info_of(&path, verify),
         Command::Init(request) => init::init(&request),
         Command::Pack(request) => pack::pack(&request),
         Command::Cycles(request) => cycles::cycles(&request),

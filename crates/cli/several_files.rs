@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use assembly::Assembly;
 use comm::Communicator;
 use dynamics::Model;
-use results::cut::Cut;
+use results::cut::TableCut;
 use results::failure::{Failure, agree};
 use results::files::{Files, ResumedFrom};
 use results::several::SeveralTables;
@@ -33,9 +33,26 @@ pub fn create_files(
     Ok(files)
 }
 
+/// Opens the files of all bearings to go on after the step that was read, at which a bearing, by its number, is as in
+/// what `found` gives; returns their scenes too.
+pub fn resume_all<'m>(
+    bearings: Vec<StoredBearing>,
+    surveys: Vec<Survey>,
+    found: impl Fn(usize) -> (&'m Model, Snapshot, &'m Arrays),
+) -> Result<(Vec<Files>, Vec<Scene>), Failure> {
+    let (mut files, mut placed) = (Vec::new(), Vec::new());
+    for (i, (bearing, survey)) in bearings.into_iter().zip(surveys).enumerate() {
+        let (model, own, reduction) = found(i);
+        let (own, scene) = resume_files(bearing, model, survey, (own, reduction))?;
+        files.push(own);
+        placed.push(scene);
+    }
+    Ok((files, placed))
+}
+
 /// Opens the files of a bearing to go on after the step that was read, at which it is as in the snapshot; returns its
 /// scene too.
-pub fn resume_files(
+fn resume_files(
     bearing: StoredBearing,
     model: &Model,
     survey: Survey,
@@ -52,7 +69,7 @@ pub fn resume_files(
 }
 
 /// Opens the tables beside the folders of the bearings; what stands after the step is moved aside.
-pub fn resume_tables(cuts: &[Cut], dir: &Path) -> Result<SeveralTables, Failure> {
+pub fn resume_tables(cuts: &[TableCut], dir: &Path) -> Result<SeveralTables, Failure> {
     if Communicator::world().is_root() {
         results::files::say_folder(dir);
     }

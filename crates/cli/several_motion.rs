@@ -31,7 +31,7 @@ use crate::motion::LAST_GOOD;
 use crate::options::Limits;
 use crate::progress::Progress;
 use crate::several::{self, make_folder, of_seats, require_same_list, say_types, solving, warnings_at};
-use crate::several_files::{create_files, resume_files, resume_tables};
+use crate::several_files::{create_files, resume_all, resume_tables};
 use crate::several_ledger::check_ledgers;
 use crate::several_read::{ReadList, read_list, require_memory_of_all};
 use crate::several_ready::{ready, require_space};
@@ -76,11 +76,7 @@ pub fn run(
     agree(make_folder(scene, dir))?;
     let first = ListState::of_motion(&assembly, &motion, &state);
     let tables = agree(SeveralTables::create(dir, None, &first).map_err(Failure::from))?;
-    let pairs = motion.bearings.iter().zip(&state.bearings);
-    let snapshots = pairs
-        .map(|(motion, state)| Snapshot::of_motion(motion, state))
-        .collect();
-    let files = create_files((&assembly, dir), &placed, snapshots, surveys)?;
+    let files = create_files((&assembly, dir), &placed, snapshots(&motion, &state), surveys)?;
     let mut march = ListMarch {
         watches: new_watches(&assembly),
         scene,
@@ -136,15 +132,10 @@ pub fn resume(
     let first = ListState::of_motion(&assembly, &motion, &restored.state);
     // Nothing is changed before all is known to fit.
     let cuts = agree(SeveralTables::cuts(&dir, &first, step).map_err(Failure::from))?;
-    let (mut files, mut placed) = (Vec::new(), Vec::new());
-    for (i, (bearing, survey)) in bearings.into_iter().zip(surveys).enumerate() {
-        let (motion, state) = (&motion.bearings[i], &restored.state.bearings[i]);
-        let (model, reduction) = (&assembly.bearings[i].model, &restored.reductions[i]);
-        let found = (Snapshot::of_motion(motion, state), reduction);
-        let (own, scene) = resume_files(bearing, model, survey, found)?;
-        files.push(own);
-        placed.push(scene);
-    }
+    let snapshots = snapshots(&motion, &restored.state);
+    let model = |i: usize| &assembly.bearings[i].model;
+    let found = |i: usize| (model(i), snapshots[i].clone(), &restored.reductions[i]);
+    let (files, placed) = resume_all(bearings, surveys, found)?;
     let tables = resume_tables(&cuts, &dir)?;
     let march = ListMarch {
         scene: &scene,
@@ -164,6 +155,14 @@ pub fn resume(
         dir: &dir,
     };
     march.finish_run(progress, limits, warnings, start)
+}
+
+/// What all bearings show.
+fn snapshots(motion: &AssemblyMotion<'_>, state: &AssemblyState) -> Vec<Snapshot> {
+    let pairs = motion.bearings.iter().zip(&state.bearings);
+    pairs
+        .map(|(motion, state)| Snapshot::of_motion(motion, state))
+        .collect()
 }
 
 fn new_watches(assembly: &Assembly) -> Vec<Watch> {

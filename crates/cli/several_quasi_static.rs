@@ -32,8 +32,8 @@ use crate::instants::{self, Due, OverInstants, PROGRESS_STEPS, WrittenSteps};
 use crate::options::Limits;
 use crate::progress::Progress;
 use crate::several::{self, make_folder, of_seats, require_same_list, say_types, solving, warnings_at};
-use crate::several_files::{create_files, resume_files, resume_tables};
-use crate::several_quasi_state::{self, ListCounts, RestoredEquilibrium};
+use crate::several_files::{create_files, resume_all, resume_tables};
+use crate::several_quasi_state::{self, ListCounts};
 use crate::several_read::{ReadList, read_list, require_memory_of_all};
 use crate::several_ready::require_space;
 use crate::several_state::StoredList;
@@ -125,27 +125,18 @@ pub fn resume(
     progress.stage("factoring the stiffness of the rings");
     let solver = AssemblySolver::new(&assembly).map_err(solving)?;
     let restored = several_quasi_state::restore(&bearings, (&assembly, &solver), (&dir, step));
-    let RestoredEquilibrium {
-        start: next,
-        columns,
-        counts,
-        reductions,
-    } = agree(restored)?;
+    let restored = agree(restored)?;
     let mut list = TurningList::new((&scene, settings.step), assembly, solver);
     // What the step shows, found once more; the next one starts from what the file holds.
-    list.solver.restore_columns(columns.clone());
-    let last = list.solve(step, Some(&next)).map_err(solving)?;
-    list.solver.restore_columns(columns);
+    list.solver.restore_columns(restored.columns.clone());
+    let last = list.solve(step, Some(&restored.start)).map_err(solving)?;
+    list.solver.restore_columns(restored.columns);
     // Nothing is changed before all is known to fit.
     let shown = ListState::of_equilibrium(&list.assembly, &last);
     let cuts = agree(SeveralTables::cuts(&dir, &shown, step).map_err(Failure::from))?;
-    let (mut files, mut placed) = (Vec::new(), Vec::new());
-    for (i, (bearing, survey)) in bearings.into_iter().zip(surveys).enumerate() {
-        let (model, found) = (&list.assembly.bearings[i].model, list.snapshot(&last, i));
-        let (own, scene) = resume_files(bearing, model, survey, (found, &reductions[i]))?;
-        files.push(own);
-        placed.push(scene);
-    }
+    let model = |i: usize| &list.assembly.bearings[i].model;
+    let found = |i: usize| (model(i), list.snapshot(&last, i), &restored.reductions[i]);
+    let (files, placed) = resume_all(bearings, surveys, found)?;
     let tables = resume_tables(&cuts, &dir)?;
     let course = ListEquilibria {
         settings,
@@ -154,9 +145,9 @@ pub fn resume(
         tables,
         files,
         step,
-        next,
+        next: restored.start,
         last,
-        counts,
+        counts: restored.counts,
         first_warnings: Vec::new(),
         written: WrittenSteps::all_of(step),
         dir: &dir,

@@ -10,7 +10,7 @@ use assembly::shaft::ShaftBody;
 use assembly::{Assembly, AssemblySolution, AssemblySolver};
 use dynamics::effects::{AxialForce, RadialForce};
 use dynamics::kinematics::{RingSpeeds, Rolling, Speed};
-use dynamics::{Model, Pose, QuasiStatic, ShaftDof};
+use dynamics::{Model, Pose, QuasiStaticMotion, ShaftDof};
 use input::Schedule;
 use ring::rigid::RigidInertia;
 
@@ -82,7 +82,7 @@ fn alone(make: fn() -> Model, [x, y, z, ..]: [f64; 5], held: [Option<f64>; 5]) -
         schedule: Schedule::Constant,
     }));
     let of_model = rolling(&model, speed());
-    let mut bearing = QuasiStatic::new(&model, of_model, DT).unwrap();
+    let mut bearing = QuasiStaticMotion::new(&model, of_model, DT).unwrap();
     let mut all = Vec::new();
     let mut last = None;
     for n in 0..=N {

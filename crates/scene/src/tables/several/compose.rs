@@ -99,10 +99,7 @@ impl Composer<'_> {
         if !problems.is_empty() {
             return Err(self.messages.invalid(problems.into_texts()));
         }
-        let speed = bearings[0].scene.speed.clone().map(|mut speed| {
-            turn_speeds(&mut speed, bearings[0].orientation);
-            speed
-        });
+        let speed = speeds_of_shaft(&bearings[0]);
         Ok(SeveralScene {
             path: self.path.to_path_buf(),
             text,
@@ -411,6 +408,13 @@ fn check_ends(raw: &[RawMounted], scenes: &[Option<Scene>], shaft: &CommonShaft,
             ));
         }
     }
+}
+
+/// Speeds as seen along the shaft, by those of one bearing.
+fn speeds_of_shaft(bearing: &BearingOnShaft) -> Option<dynamics::kinematics::RingSpeeds> {
+    let mut speeds = bearing.scene.speed.clone()?;
+    turn_speeds(&mut speeds, bearing.orientation);
+    Some(speeds)
 }
 
 /// The mass off the axis is on the shaft.
