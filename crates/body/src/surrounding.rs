@@ -21,6 +21,8 @@ const BLOCK: usize = 16;
 const RADIUS_TOLERANCE: f64 = 2e-3;
 /// The same of the widths.
 const WIDTH_TOLERANCE: f64 = 1e-2;
+/// Allowed distance along z of the middles of ring and seat, share of the width: a chamfer.
+const PLACE_TOLERANCE: f64 = 0.1;
 
 /// A seat of a body and the functions that are tied there.
 #[derive(Clone, Debug)]
@@ -418,6 +420,15 @@ fn joint(
         });
     }
     let middle = seat.middle.unwrap_or(cylinder.middle());
+    let beside = (middle - cylinder.middle()).abs();
+    if beside > PLACE_TOLERANCE * width {
+        return Err(SurroundingError::Beside {
+            what,
+            beside_mm: 1e3 * beside,
+            width_mm: 1e3 * width,
+            most_mm: 1e3 * PLACE_TOLERANCE * width,
+        });
+    }
     let shift = space.middle - middle;
     let place = |node: usize| {
         let [x, y, z] = in_ring(node);
