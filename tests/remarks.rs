@@ -471,25 +471,6 @@ fn info_says_what_a_mesh_holds_and_what_it_was_made_from() {
     let outcome = dir.raceway(&["info", "torn.msh"]);
     assert_eq!(outcome.code, Some(2), "{}", outcome.stderr);
     assert!(!outcome.stderr.contains("seal"), "{}", outcome.stderr);
-    let named = |name: &[u8; 6]| {
-        let mut bytes = std::fs::read(dir.path("inner.msh")).unwrap();
-        let place = bytes.windows(6).position(|part| part == b"\"ring\"").unwrap();
-        bytes.splice(place..place + 6, *name);
-        bytes
-    };
-    dir.write("body.msh", named(b"\"body\""));
-    let outcome = dir.raceway(&["info", "body.msh"]);
-    assert_eq!(outcome.code, Some(0), "{}", outcome.stderr);
-    assert!(
-        outcome
-            .stdout
-            .contains("mesh       108 hex8, 252 nodes, 756 dofs")
-    );
-    dir.write("part.msh", named(b"\"part\""));
-    let outcome = dir.raceway(&["info", "part.msh"]);
-    let expected = "part.msh has no physical Volume \"ring\" or \"body\" with elements, the mesh of a ring or of a \
-                    [[body]]; physical Volumes are \"part\"";
-    assert!(outcome.stderr.contains(expected), "{}", outcome.stderr);
 }
 
 /// Wrong: the message on a groove that does not fit would not name the command that makes the mesh fit.
