@@ -423,6 +423,21 @@ fn a_pair_moves_and_a_resumed_one_has_the_same_bits() {
     for part in ["<h3>Energy at the end</h3>", "aria-label=\"energy ledger\""] {
         assert!(page.contains(part), "{part}");
     }
+    let of_one = "whole has the results of several bearings on one shaft; expected the folder of one of them, such as \
+                  whole/front";
+    for command in [
+        &["cycles", "whole"][..],
+        &["export", "whole", "--to", "vtu"],
+        &["pack", "whole"],
+        &["spectrum", "whole", "--probe", "x_m", "--upto", "1000"],
+        &["spall-length", "whole", "--ring", "outer"],
+        &["ball-loads", "whole", "--matrix", "none.csv"],
+        &["life", "whole"],
+    ] {
+        let refused = dir.raceway(command);
+        assert_eq!(refused.code, Some(2), "{command:?}");
+        assert!(refused.stderr.contains(of_one), "{command:?}: {}", refused.stderr);
+    }
     // The same again, of which the half is done anew.
     succeeds(&dir, &["run", "pair.toml", "--out", "half"]);
     let refused = dir.raceway(&["resume", "half", "--set", "pairing.offset=\"1 um\""]);

@@ -67,3 +67,4 @@ mod sweeps;
 mod util;
 mod waviness;
 mod worn_balls;
+mod wrong_shoulder;

@@ -9,6 +9,7 @@ use checkpoint::{
     read_step, read_step_time, read_table, require_run, run_of, step_file_name,
 };
 use comm::print;
+use mesh::{Mesh, MeshError};
 use results::answer;
 use results::disk::size;
 use results::failure::Failure;
@@ -30,7 +31,7 @@ pub fn info(path: &Path, depth: Inspection) -> Result<(), Failure> {
     if path.is_dir() {
         folder(path, depth)
     } else if is_msh(path) {
-        ring_mesh(path)
+        gmsh_file(path)
     } else if path.exists() {
         file(path)
     } else {
@@ -52,9 +53,26 @@ fn is_msh(path: &Path) -> bool {
 /// What a mesh of Gmsh begins with.
 const MSH_HEAD: &[u8; 11] = b"$MeshFormat";
 
-/// The mesh of a ring, in the unit of its file.
-fn ring_mesh(path: &Path) -> Result<(), Failure> {
-    let mesh = mesh::read_msh(path, 1.0)?;
+/// The mesh of a ring, or else that of a body.
+fn read_gmsh(path: &Path) -> Result<Mesh, Failure> {
+    let groups = match mesh::read_msh(path, 1.0) {
+        Err(MeshError::NoBody { groups, .. }) => groups,
+        read => return Ok(read?),
+    };
+    match mesh::read_body_msh(path, 1.0) {
+        Err(MeshError::NoBody { .. }) => Err(anyhow!(
+            "{} has no physical Volume \"ring\" or \"body\" with elements, the mesh of a ring or of a [[body]]; \
+             physical Volumes are {groups}",
+            path.display()
+        )
+        .into()),
+        read => Ok(read?.0),
+    }
+}
+
+/// The mesh of a ring or a body, in the unit of its file.
+fn gmsh_file(path: &Path) -> Result<(), Failure> {
+    let mesh = read_gmsh(path)?;
     let bytes = std::fs::metadata(path).map_or(0, |data| data.len());
     line("file", &format!("{}, {}", path.display(), size(bytes)));
     line(

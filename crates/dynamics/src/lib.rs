@@ -40,6 +40,7 @@ pub mod footprint;
 pub mod frame;
 pub mod pose;
 pub mod raceway;
+pub mod shoulders;
 pub mod surface_equilibrium;
 pub mod surfaces;
 

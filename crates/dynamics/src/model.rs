@@ -27,6 +27,7 @@ use crate::interactions::seat_spring::Seat;
 use crate::interactions::traction::{Ellipse, Traction};
 use crate::kinematics::RingSpeeds;
 use crate::mounting::Mounting;
+use crate::shoulders::Shoulders;
 use crate::surfaces::Surfaces;
 
 /// Largest tilt of the shaft, rad: a little more than 3 deg. Contacts take it exactly; the inertia of tilts is off by
@@ -120,6 +121,8 @@ pub struct Model {
     pub sphere: SphereCompliance,
     /// Real surfaces; the default costs nothing.
     pub surfaces: Surfaces,
+    /// What the scene tells of shoulders, for warnings.
+    pub shoulders: Shoulders,
     /// Flexible rings, inner first; None is a rigid ring and costs nothing.
     pub rings: [Option<Arc<RingModel>>; 2],
     /// Forces on the other seats of the body of each ring at rest, inner first, N, over the functions of all its seats;

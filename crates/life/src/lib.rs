@@ -129,6 +129,7 @@ pub fn of_run(scene: &Scene, dir: &Path) -> Option<serde_json::Value> {
 }
 
 fn life_of_run(dir: &Path, command: &LifeCommand) -> Result<(), Failure> {
+    plot::require_one_bearing(dir)?;
     let run = FinishedRun::read(dir, &command.overrides)?;
     say_later(dir);
     let out = Some(command.out.as_deref().unwrap_or(dir));

@@ -20,7 +20,7 @@ use crate::marks::require_raceway_under_marks;
 use crate::resolution::require_resolvable;
 use crate::section_record::{require_fresh, with_command};
 use crate::settings::speeds;
-use crate::surfaces::surfaces;
+use crate::surfaces::{shoulders, surfaces};
 use crate::tables::{self, FlexibleRing, Scene};
 
 /// Least semi-axis of a patch on quadratic elements in the rolling direction, ball diameters. A patch of one such
@@ -79,6 +79,7 @@ pub fn model_with_rings(scene: &Scene, rings: [Option<Arc<RingModel>>; 2]) -> Re
     let mounting = mounting(scene, &geometry, &rings)?;
     let (shaft, ring) = (&scene.shaft, scene.inner.inertia);
     let contact = contact_settings(scene, &geometry, &rings);
+    let shoulders = shoulders(scene, &geometry, &rings);
     let dofs = [shaft.x, shaft.y, shaft.z, shaft.tilt_x, shaft.tilt_y].map(|motion| match motion {
         tables::ShaftMotion::Free => ShaftDof::Free,
         tables::ShaftMotion::Locked => ShaftDof::Prescribed(0.0),
@@ -89,6 +90,7 @@ pub fn model_with_rings(scene: &Scene, rings: [Option<Arc<RingModel>>; 2]) -> Re
         hertz,
         sphere,
         surfaces: Surfaces::default(),
+        shoulders,
         rings,
         other_seats: [None, None],
         weighs_carried: true,

@@ -40,6 +40,7 @@ const SPREAD: f64 = 0.02;
 pub fn spall_length(command: &SpallLengthCommand) -> Result<(), Failure> {
     let dir = &command.dir;
     require_folder(dir)?;
+    plot::require_one_bearing(dir)?;
     let scene = scene_of(dir)?;
     let side = Side::BOTH.into_iter().find(|side| side.name() == command.ring);
     let side = side.expect("the command line knows both names");

@@ -17,11 +17,17 @@ pub enum ContactLimit {
     Edge,
     /// The peak pressure exceeds the static limit of bearing steel (ISO 76, 4.2 GPa).
     StaticPressure,
+    /// A ball carries on the shoulder that an angular contact bearing does not have.
+    WrongShoulder,
 }
 
 impl ContactLimit {
     /// All limits.
-    pub const ALL: [ContactLimit; 2] = [ContactLimit::Edge, ContactLimit::StaticPressure];
+    pub const ALL: [ContactLimit; 3] = [
+        ContactLimit::Edge,
+        ContactLimit::StaticPressure,
+        ContactLimit::WrongShoulder,
+    ];
 }
 
 /// A contact beyond a limit.
@@ -61,13 +67,21 @@ impl Motion<'_> {
                 |moving: &MovingRing| is_truncated(&moving.raceway.surface, state.angles[index], axes);
             let is_beyond = match self.model.surfaces.edges(side) {
                 Some(_) => bearing.is_some_and(|bearing| bearing.kind == EllipseKind::Edge),
-                None => self.rings[side.index()].as_ref().is_some_and(beyond),
+                None => {
+                    let reach = axes[0] / self.model.geometry.groove_radius(side);
+                    let shoulders = &self.model.shoulders;
+                    self.rings[side.index()].as_ref().is_some_and(beyond)
+                        || shoulders.is_beyond(side, state.angles[index], reach)
+                }
             };
             if is_beyond {
                 add(ContactLimit::Edge);
             }
             if pressure > STATIC_LIMIT {
                 add(ContactLimit::StaticPressure);
+            }
+            if self.model.shoulders.is_against(state.angles[index]) {
+                add(ContactLimit::WrongShoulder);
             }
         }
         found

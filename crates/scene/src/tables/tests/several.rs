@@ -305,6 +305,11 @@ fn bad_lists_are_refused_with_advice() {
             "bearing.name \"front\" stands twice; expected a name of its own for each bearing",
         ),
         (
+            beam.replace("name = \"rear\"", "name = \"figures\""),
+            "bearing.name of bearing 2 is \"figures\"; this name is reserved: the folder of a run has \"figures\" and \
+             \"superseded_1\" itself; expected a name that is not \"figures\" and does not begin with \"superseded\"",
+        ),
+        (
             beam.replace("name = \"rear\"", "name = \"rear one\""),
             "bearing.name of bearing 2 is \"rear one\"; expected letters, digits, _ and -",
         ),
