@@ -167,7 +167,8 @@ fn what_a_balance_lacks_is_said() {
         ),
         (
             &set("heat.conductance.inner_shaft=\"5\""),
-            "\"5\" does not end with \"W/K\"; expected a thermal conductance such as \"5 W/K\"",
+            "\"5\" has no unit, of which \"W/K\", \"mW/K\", \"kW/K\" are known; expected \
+             a thermal conductance such as \"5 W/K\"",
         ),
     ];
     for (arguments, expected) in cases {

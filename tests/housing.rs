@@ -441,3 +441,22 @@ pub fn assert_moves_and_goes_on(dir: &Dir, scene: &str, more: &[&str]) {
         assert_same_run(dir, &format!("whole/{name}"), &format!("cut/{name}"));
     }
 }
+
+/// Wrong: `info` would call the mesh of a body a bad mesh of a ring.
+#[test]
+fn info_says_what_the_mesh_of_a_body_holds() {
+    let dir = Dir::with_scene(crate::util::SCENE);
+    let [inner, _] = crate::util::rings::tiny_texts();
+    assert!(inner.contains("\"ring\""));
+    dir.write("body.msh", inner.replace("\"ring\"", "\"body\""));
+    let outcome = dir.raceway(&["info", "body.msh"]);
+    assert_eq!(outcome.code, Some(0), "{}", outcome.stderr);
+    for part in ["mesh       108 hex8, 252 nodes", "group      bore, 108 facets"] {
+        assert!(outcome.stdout.contains(part), "{}", outcome.stdout);
+    }
+    dir.write("part.msh", inner.replace("\"ring\"", "\"part\""));
+    let outcome = dir.raceway(&["info", "part.msh"]);
+    let expected = "part.msh has no physical Volume \"ring\" or \"body\" with elements, the mesh of a ring or of a \
+                    [[body]]; physical Volumes are \"part\"";
+    assert!(outcome.stderr.contains(expected), "{}", outcome.stderr);
+}

@@ -12,8 +12,8 @@ use assembly::whirl::TurningAssembly;
 use clap::Args;
 use contact::Side;
 use dynamics::kinematics::Speed;
-use dynamics::whirl::{TurningShaft, turning_inertia};
-use dynamics::{Linearisation, Model, ShaftDof, StaticSolver};
+use dynamics::whirl::{TurningShaft, WhirlMode, turning_inertia};
+use dynamics::{Linearisation, Model, ShaftDof, StaticSolution, StaticSolver};
 use results::campbell::{CAMPBELL_LINES, CAMPBELL_TABLE, ModesAtSpeed};
 use results::failure::Failure;
 use results::stiffness::require_free;
@@ -131,6 +131,21 @@ fn number_of_modes(command: &CampbellCommand, model: &Model, has_bodies: bool) -
     Ok(number)
 }
 
+/// The equations of a bearing with elastic bodies at a speed, rad/s.
+fn in_bodies(
+    bodies: &TurningAssembly,
+    (model, linear): (&Model, &Linearisation),
+    stands: (&StaticSolver, &StaticSolution),
+    speed: f64,
+) -> Result<TurningShaft, Failure> {
+    let found = bodies.equations_of_one(model, stands, linear, speed);
+    found.map_err(solving)
+}
+
+fn modes_of(shaft: TurningShaft) -> Result<Vec<WhirlMode>, Failure> {
+    shaft.modes().map_err(Failure::solving)
+}
+
 /// Modes at all speeds.
 fn diagram(
     mut scene: Scene,
@@ -165,18 +180,11 @@ fn diagram(
         require_load(&solution).map_err(at)?;
         let linear = Linearisation::new(&model, &solver, &solution, laws(&scene));
         let linear = linear.map_err(Failure::solving).map_err(at)?;
-        let turning = match &bodies {
+        let modes = match &bodies {
             None => TurningShaft::new(&model, &linear, inertia, speeds[0]).map_err(Failure::solving),
-            Some(bodies) => {
-                let found = bodies.equations_of_one(&model, (&solver, &solution), &linear, speeds[0]);
-                found.map_err(solving)
-            }
+            Some(bodies) => in_bodies(bodies, (&model, &linear), (&solver, &solution), speeds[0]),
         };
-        let mut modes = turning
-            .map_err(at)?
-            .modes()
-            .map_err(Failure::solving)
-            .map_err(at)?;
+        let mut modes = modes.and_then(modes_of).map_err(at)?;
         // Balls that creep back have no frequency.
         modes.retain(|mode| mode.frequency > 0.0 || mode.damping_ratio < GROWS);
         modes.truncate(number);

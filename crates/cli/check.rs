@@ -11,7 +11,7 @@ use results::answer;
 use results::disk::{self, Forecast};
 use results::failure::Failure;
 use results::memory::{bound, forecast};
-use results::probes::Probes;
+use results::probes::PlacedProbes;
 use results::survey::Survey;
 use scene::{Analysis, AnyScene, Scene, build_model, doubts};
 
@@ -29,7 +29,7 @@ pub fn check(path: &Path, overrides: &[String]) -> Result<(), Failure> {
         AnyScene::Several(list) => return several_check::check(&list),
     };
     let (model, tags) = build_model(&scene)?;
-    let probes = Probes::new(&scene, &model, &tags)?;
+    let probes = PlacedProbes::new(&scene, &model, &tags)?;
     let region = Survey::of_part(&scene, &model)?.region;
     print::line(format_args!(
         "scene    {}",
@@ -189,7 +189,7 @@ fn print_memory(
 }
 
 /// Prints where the probes of a scene lie.
-fn print_probes(scene: &Scene, probes: Option<&Probes>) {
+fn print_probes(scene: &Scene, probes: Option<&PlacedProbes>) {
     let Some(probes) = probes else { return };
     for p in probes.places() {
         print::line(format_args!(

@@ -51,6 +51,7 @@ pub fn cycles(request: &Cycles) -> Result<(), Failure> {
         .into());
     }
     let dir = &request.dir;
+    plot::require_one_bearing(dir)?;
     let histories = Histories::read(dir, [request.from, request.to])?;
     warn_of_doubts(dir)?;
     let (Some(first), Some(last)) = (histories.times.first(), histories.times.last()) else {

@@ -39,6 +39,7 @@ enum ExportForm {
 /// Writes the steps asked for; existing files are not touched.
 pub fn export(request: &Export) -> Result<(), Failure> {
     let dir = &request.dir;
+    plot::require_one_bearing(dir)?;
     let steps = chosen(&all_steps(dir)?, request)?;
     let grid = read_mesh(dir)?;
     let out = request.out.clone().unwrap_or_else(|| dir.join("export"));

@@ -9,6 +9,7 @@ use checkpoint::{
     read_step, read_step_time, read_table, require_run, run_of, step_file_name,
 };
 use comm::print;
+use mesh::{Mesh, MeshError};
 use results::answer;
 use results::disk::size;
 use results::failure::Failure;
@@ -30,7 +31,7 @@ pub fn info(path: &Path, depth: Inspection) -> Result<(), Failure> {
     if path.is_dir() {
         folder(path, depth)
     } else if is_msh(path) {
-        ring_mesh(path)
+        gmsh_file(path)
     } else if path.exists() {
         file(path)
     } else {
@@ -52,9 +53,26 @@ fn is_msh(path: &Path) -> bool {
 /// What a mesh of Gmsh begins with.
 const MSH_HEAD: &[u8; 11] = b"$MeshFormat";
 
-/// The mesh of a ring, in the unit of its file.
-fn ring_mesh(path: &Path) -> Result<(), Failure> {
-    let mesh = mesh::read_msh(path, 1.0)?;
+/// The mesh of a ring, or else that of a body.
+fn read_gmsh(path: &Path) -> Result<Mesh, Failure> {
+    let groups = match mesh::read_msh(path, 1.0) {
+        Err(MeshError::NoBody { groups, .. }) => groups,
+        read => return Ok(read?),
+    };
+    match mesh::read_body_msh(path, 1.0) {
+        Err(MeshError::NoBody { .. }) => Err(anyhow!(
+            "{} has no physical Volume \"ring\" or \"body\" with elements, the mesh of a ring or of a [[body]]; \
+             physical Volumes are {groups}",
+            path.display()
+        )
+        .into()),
+        read => Ok(read?.0),
+    }
+}
+
+/// The mesh of a ring or a body, in the unit of its file.
+fn gmsh_file(path: &Path) -> Result<(), Failure> {
+    let mesh = read_gmsh(path)?;
     let bytes = std::fs::metadata(path).map_or(0, |data| data.len());
     line("file", &format!("{}, {}", path.display(), size(bytes)));
     line(
@@ -92,14 +110,34 @@ fn range(values: impl Iterator<Item = f64>) -> [f64; 2] {
     })
 }
 
-fn line(name: &str, text: &str) {
+/// Prints a line with its name.
+pub fn line(name: &str, text: &str) {
     // A long name is followed by a space, too.
     let name = format!("{name} ");
     print::line(format_args!("{name:<11}{text}"));
 }
 
+/// What a folder was found to hold.
+pub struct Inspected {
+    /// Numbers of its sound steps.
+    pub steps: Vec<u64>,
+    /// What is damaged.
+    pub damaged: Vec<String>,
+}
+
 fn folder(dir: &Path, depth: Inspection) -> Result<(), Failure> {
-    plot::require_one_bearing(dir)?;
+    let Inspected { steps, damaged } = inspect(dir, depth)?;
+    answer::add_results(dir);
+    answer::add("steps", steps);
+    answer::add("damaged", &damaged);
+    match damaged.len() {
+        0 => Ok(()),
+        n => Err(anyhow!("{n} files of {} are damaged", dir.display()).into()),
+    }
+}
+
+/// Prints what the folder of a bearing holds, damage too.
+pub fn inspect(dir: &Path, depth: Inspection) -> Result<Inspected, Failure> {
     let steps = committed_steps(dir)?;
     line("folder", &dir.display().to_string());
     let (mut damaged, mut sound, mut states, mut bytes) = (Vec::new(), Vec::new(), Vec::new(), 0);
@@ -142,16 +180,13 @@ fn folder(dir: &Path, depth: Inspection) -> Result<(), Failure> {
     lines_of_packs(dir)?;
     damaged.extend(doubts(dir)?);
     folder_state(dir)?;
-    answer::add_results(dir);
-    answer::add("steps", sound.iter().map(|(step, _)| step).collect::<Vec<_>>());
-    answer::add("damaged", &damaged);
     for text in &damaged {
         line("damaged", text);
     }
-    match damaged.len() {
-        0 => Ok(()),
-        n => Err(anyhow!("{n} files of {} are damaged", dir.display()).into()),
-    }
+    Ok(Inspected {
+        steps: sound.iter().map(|(step, _)| *step).collect(),
+        damaged,
+    })
 }
 
 /// How many steps there are, and of which times; `sound` are numbers and times, s.

@@ -175,6 +175,7 @@ fn require_steps(
 /// Writes the ball loads of a run.
 pub fn ball_loads(command: &BallLoadsCommand) -> Result<(), Failure> {
     let dir = &command.dir;
+    plot::require_one_bearing(dir)?;
     let matrix = LoadMatrix::read(&command.matrix)?;
     let inverse = matrix.inverse()?;
     let probes = table_of(dir, "probes.csv", "the results of a scene with gauges")?;

@@ -32,11 +32,17 @@ mod run;
 mod several;
 mod several_campbell;
 mod several_check;
+mod several_files;
+mod several_info;
 mod several_ledger;
 mod several_modes;
 mod several_motion;
+mod several_quasi_state;
+mod several_quasi_static;
 mod several_read;
 mod several_ready;
+mod several_rest;
+mod several_resume;
 mod several_state;
 mod several_stiffness;
 mod shared;
@@ -46,7 +52,7 @@ mod stored;
 
 use std::ffi::OsString;
 use std::os::unix::process::CommandExt;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
@@ -69,7 +75,7 @@ use crate::info::Inspection;
 use crate::init::Init;
 use crate::load_matrix::{BallLoadsCommand, LoadMatrixCommand};
 use crate::mesh_command::MeshCommand;
-use crate::options::{Limits, Part, parse_part};
+use crate::options::{Limits, SweepPart, parse_part};
 use crate::pack::Pack;
 use crate::resume::ResumeRequest;
 use crate::stiffness::StiffnessCommand;
@@ -126,7 +132,7 @@ enum Command {
         out: Option<PathBuf>,
         /// Solves only these points of a sweep, the first from its own start: a number, or first-last, such as 0-9.
         #[arg(long, value_name = "POINTS", value_parser = parse_part)]
-        points: Option<Part>,
+        points: Option<SweepPart>,
         #[command(flatten)]
         limits: Limits,
     },
@@ -364,6 +370,18 @@ fn prepare(arguments: &Arguments) -> Result<(), Failure> {
     Ok(())
 }
 
+/// What a file or folder holds; with `verify` its bytes are read too.
+fn info_of(path: &Path, verify: bool) -> Result<(), Failure> {
+    let depth = match verify {
+        true => Inspection::Bytes,
+        false => Inspection::Structure,
+    };
+    match path.is_dir() && !plot::bearings(path)?.is_empty() {
+        true => several_info::info(path, depth),
+        false => info::info(path, depth),
+    }
+}
+
 fn execute(arguments: Arguments) -> Result<(), Failure> {
     prepare(&arguments)?;
     match arguments.command {
@@ -381,7 +399,7 @@ fn execute(arguments: Arguments) -> Result<(), Failure> {
         }
         Command::Resume(request) => {
             match several_state::is_list(&request.dir)? {
-                true => several_motion::resume_run(
+                true => several_resume::resume_run(
                     &request.dir,
                     request.step,
                     request.changes(),
@@ -395,14 +413,7 @@ fn execute(arguments: Arguments) -> Result<(), Failure> {
         Command::Gmsh { .. } | Command::Help { .. } | Command::Completions { .. } | Command::Man { .. } => {
             unreachable!("they need no ranks and threads")
         }
-        Command::Info { path, verify } => info::info(
-            &path,
-            if verify {
-                Inspection::Bytes
-            } else {
-                Inspection::Structure
-            },
-        ),
+        Command::Info { path, verify } => info_of(&path, verify),
         Command::Init(request) => init::init(&request),
         Command::Pack(request) => pack::pack(&request),
         Command::Cycles(request) => cycles::cycles(&request),

@@ -108,10 +108,11 @@ pub fn name(body: ModeBody, wanted: &Modes) -> String {
 pub fn basis_bytes(model: &Model, wanted: &Modes) -> usize {
     let [alone, bearing] = basis_sizes(wanted.number, model.geometry.n_balls);
     let n_dofs = |side: Side| model.ring(side).map_or(0, |ring| ring.mesh.n_dofs());
+    let [inner, outer] = Side::BOTH.map(n_dofs);
     let of_body = |body: &ModeBody| match body {
-        ModeBody::Inner => alone * n_dofs(Side::Inner),
-        ModeBody::Outer => alone * n_dofs(Side::Outer),
-        ModeBody::Bearing => bearing * (n_dofs(Side::Inner) + n_dofs(Side::Outer)),
+        ModeBody::Inner => alone * inner,
+        ModeBody::Outer => alone * outer,
+        ModeBody::Bearing => bearing * (inner + outer),
     };
     2 * size_of::<f64>() * wanted.bodies.iter().map(of_body).max().unwrap_or(0)
 }

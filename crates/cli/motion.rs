@@ -13,7 +13,7 @@ use dynamics::motion::{Motion, MotionState, StepCache};
 use results::console;
 use results::disk::Forecast;
 use results::failure::{Failure, agree};
-use results::files::{Files, ResumedFrom};
+use results::files::{Files, ResumedFrom, say_folder};
 use results::memory::Forecasts;
 use results::motion_fields::{Recorded, RestartState};
 use results::seat;
@@ -125,6 +125,9 @@ pub fn resume(
         reduction: &reduction,
     };
     let files = agree(Files::resume(scene, &model, stored.lock, &first, survey, &from))?;
+    if files.are_written_here() {
+        say_folder(&dir);
+    }
     let march = March {
         scene,
         dynamic,

@@ -22,12 +22,12 @@ pub struct Limits {
 
 /// Some of the points of a sweep, one after the other, by their numbers from 0; the last is among them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Part {
+pub struct SweepPart {
     first: usize,
     last: usize,
 }
 
-impl Part {
+impl SweepPart {
     /// The points as a range.
     pub fn range(self) -> Range<usize> {
         self.first..self.last + 1
@@ -55,7 +55,7 @@ impl Part {
 }
 
 /// Reads a number, or the first and the last of several: 3 or 0-9.
-pub fn parse_part(text: &str) -> Result<Part, String> {
+pub fn parse_part(text: &str) -> Result<SweepPart, String> {
     let error =
         || format!("{text:?} names no points; expected a number or the first and the last, such as 3 or 0-9");
     let number = |part: &str| {
@@ -66,7 +66,7 @@ pub fn parse_part(text: &str) -> Result<Part, String> {
             .ok_or_else(error)
     };
     let (first, last) = text.split_once('-').unwrap_or((text, text));
-    let part = Part {
+    let part = SweepPart {
         first: number(first)?,
         last: number(last)?,
     };
@@ -80,7 +80,7 @@ mod tests {
     /// Wrong: a job of an array would solve other points than it was given.
     #[test]
     fn points_are_a_number_or_the_first_and_the_last() {
-        let range = |text| parse_part(text).map(Part::range);
+        let range = |text| parse_part(text).map(SweepPart::range);
         assert_eq!(range("3"), Ok(3..4));
         assert_eq!(range("0-9"), Ok(0..10));
         for bad in ["", "-1", "3-", "9-0", "a", "1-2-3", "1.5"] {

@@ -32,6 +32,7 @@ pub fn pack(request: &Pack) -> Result<(), Failure> {
     if !dir.is_dir() {
         return Err(anyhow!("{} is no folder; expected the results of a run", dir.display()).into());
     }
+    plot::require_one_bearing(dir)?;
     let lock = FolderLock::acquire(dir)?;
     note_dead_owner(&lock);
     if request.undo {

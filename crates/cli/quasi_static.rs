@@ -7,7 +7,7 @@ use std::time::Instant;
 use comm::print;
 use contact::Side;
 use dynamics::kinematics::{Rolling, Speed};
-use dynamics::{Model, QuasiStatic, StaticSolution};
+use dynamics::{Model, QuasiStaticMotion, StaticSolution};
 use results::disk::Forecast;
 use results::failure::{Failure, agree};
 use results::files::Files;
@@ -45,7 +45,7 @@ pub fn run(
     let rolling = rolling(scene);
     let at_rest = || Rolling::new(&model.geometry, Speed::constant(0.0), [0.0; 2]);
     let turning = rolling.clone().unwrap_or_else(at_rest);
-    let mut bearing = QuasiStatic::new(&model, turning, settings.step).map_err(Failure::solving)?;
+    let mut bearing = QuasiStaticMotion::new(&model, turning, settings.step).map_err(Failure::solving)?;
     progress.stage("first equilibrium");
     let first = bearing.step(0, None).map_err(Failure::solving)?;
     // The first solution makes the folder: a scene that has none leaves no files.
@@ -86,7 +86,7 @@ struct QuasiStaticRun<'a, 'm> {
     settings: &'a scene::QuasiStatic,
     model: &'a Model,
     rolling: Option<&'a Rolling>,
-    bearing: &'a mut QuasiStatic<'m>,
+    bearing: &'a mut QuasiStaticMotion<'m>,
     files: Files,
     /// Steps done, rounds and Newton iterations so far.
     iterations: [usize; 3],

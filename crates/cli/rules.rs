@@ -15,7 +15,7 @@ use contact::Side;
 use dynamics::Model;
 use dynamics::effects::rules::{Case, MATTERS, percent};
 use results::failure::Failure;
-use scene::{Analysis, Motion, Scene, material, speeds};
+use scene::{Analysis, Scene, ShaftMotion, material, speeds};
 
 use crate::periodic_gain;
 
@@ -77,7 +77,7 @@ fn zero_of_the_shaft(scene: &Scene, model: &Model, lines: &mut Vec<String>) {
     let geometry = &model.geometry;
     let angle = geometry.free_contact_angle();
     let play = geometry.groove_distance() * angle.sin();
-    let is_zero = matches!(scene.shaft.z, Motion::Locked | Motion::Prescribed(0.0));
+    let is_zero = matches!(scene.shaft.z, ShaftMotion::Locked | ShaftMotion::Prescribed(0.0));
     if !is_zero || play <= NO_PLAY || model.seat().is_some() {
         return;
     }
@@ -95,7 +95,7 @@ const ANGULAR: f64 = 14.0 * std::f64::consts::PI / 180.0;
 /// A radial force alone drives the rings of an angular contact bearing apart along the axis.
 fn free_without_thrust(scene: &Scene, case: &Case<'_>) -> Option<String> {
     let angle = case.contact_angle();
-    let is_held = scene.shaft.z != Motion::Free || case.model.seat().is_some();
+    let is_held = scene.shaft.z != ShaftMotion::Free || case.model.seat().is_some();
     if is_held || case.load.axial != 0.0 || case.load.radial == 0.0 || angle < ANGULAR {
         return None;
     }
@@ -115,7 +115,7 @@ fn rigid_ring_without_inertia(scene: &Scene, case: &Case<'_>) -> Option<String> 
     if !has_inertia || scene.inner.body.is_some() {
         return None;
     }
-    let is_free = |motions: &[Motion]| motions.contains(&Motion::Free);
+    let is_free = |motions: &[ShaftMotion]| motions.contains(&ShaftMotion::Free);
     let of_mass = is_free(&[shaft.x, shaft.y, shaft.z]) && shaft.mass == 0.0;
     let of_tilt = is_free(&[shaft.tilt_x, shaft.tilt_y]) && shaft.inertia.transverse == 0.0;
     let missing = match (of_mass, of_tilt) {

@@ -22,12 +22,12 @@ use scene::{Analysis, AnyScene, Scene, SeveralScene, have_same_rings, model_with
 use crate::instants::{self, Due, OverInstants, WrittenSteps};
 use crate::modes;
 use crate::motion;
-use crate::options::{Limits, Part};
+use crate::options::{Limits, SweepPart};
 use crate::progress::Progress;
 use crate::quasi_static;
 use crate::remarks::Remarks;
 use crate::shared::note_unshared;
-use crate::{several, several_modes, several_motion};
+use crate::{several, several_modes, several_motion, several_quasi_static, several_rest};
 
 /// One load case of a run: the swept value (None for a static scene) and its scene.
 pub type SweptScene = (Option<f64>, Scene);
@@ -46,7 +46,7 @@ pub fn run(
     overrides: &[String],
     out: Option<PathBuf>,
     limits: &Limits,
-    part: Option<Part>,
+    part: Option<SweepPart>,
 ) -> Result<PathBuf, Failure> {
     let start = Instant::now();
     let scene = match agree(AnyScene::load(path, overrides).map_err(Failure::from))? {
@@ -73,13 +73,13 @@ pub fn run(
 /// Runs the load cases of a scene, or a part of them.
 fn run_points(
     scene: &Scene,
-    part: Option<Part>,
+    part: Option<SweepPart>,
     dir: &Path,
     limits: &Limits,
     start: Instant,
 ) -> Result<(), Failure> {
     let all = agree(points(scene))?;
-    let chosen = part.map_or(0..all.len(), Part::range);
+    let chosen = part.map_or(0..all.len(), SweepPart::range);
     let (first, points) = (chosen.start as u64, &all[chosen]);
     let mut progress = Progress::new(points.len() as u64);
     progress.stage("reading meshes");
@@ -239,7 +239,7 @@ impl OverInstants for LoadCases<'_> {
 fn run_list(
     list: &SeveralScene,
     out: Option<PathBuf>,
-    (limits, part): (&Limits, Option<Part>),
+    (limits, part): (&Limits, Option<SweepPart>),
     start: Instant,
 ) -> Result<PathBuf, Failure> {
     several::refuse(part.map(|_| "--points"), list)?;
@@ -247,8 +247,9 @@ fn run_list(
     note_unshared(&list.bearings[0].scene);
     match &list.analysis {
         Analysis::Dynamic(dynamic) => several_motion::run(list, dynamic, &dir, limits, start)?,
+        Analysis::QuasiStatic(settings) => several_quasi_static::run(list, settings, &dir, limits, start)?,
         Analysis::Modes(wanted) => several_modes::run(list, wanted, &dir, limits, start)?,
-        _ => several::run(list, &dir, start)?,
+        Analysis::Static | Analysis::Sweep(_) => several_rest::run(list, &dir, start)?,
     }
     Ok(dir)
 }

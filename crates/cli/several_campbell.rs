@@ -9,6 +9,7 @@ use assembly::stiffness::LinearAssembly;
 use assembly::whirl::TurningAssembly;
 use dynamics::DampingLaws;
 use dynamics::kinematics::Speed;
+use dynamics::whirl::WhirlMode;
 use results::campbell::{CAMPBELL_LINES, CAMPBELL_TABLE, ModesAtSpeed};
 use results::failure::Failure;
 use results::stiffness::require_free;
@@ -78,11 +79,7 @@ fn diagram(
         let at = |failure: Failure| failure.context(format!("{rpm} rpm"));
         progress.stage(&format!("{rpm} rpm"));
         let speed = rpm * PI / 30.0;
-        for bearing in &mut scene.bearings {
-            let mut own = bearing.scene.speed.clone().unwrap_or_default();
-            own.inner = Speed::constant(bearing.orientation.turned_angle(speed));
-            bearing.scene.speed = Some(own);
-        }
+        turn_shaft(&mut scene, speed);
         assembly = assembly_with_rings(&scene, rings(assembly))?;
         let solution = solver
             .solve(&mut assembly, before.as_ref())
@@ -92,10 +89,7 @@ fn diagram(
             .and_then(|linear| turning.equations((&assembly, &solver), (&solution, &linear), speed));
         let modes = modes.map_err(solving).map_err(at)?.modes();
         let mut modes = modes.map_err(Failure::solving).map_err(at)?;
-        // Balls that creep back have no frequency.
-        modes.retain(|mode| mode.frequency > 0.0 || mode.damping_ratio < GROWS);
-        modes.retain(|mode| mode.shaft_share + mode.standing_share > OF_BALLS || mode.damping_ratio < GROWS);
-        modes.truncate(number);
+        keep_modes_of_shaft(&mut modes, number);
         warnings.extend(growing(rpm, &modes));
         if !is_warned {
             let found = warnings_at(&format!("from {rpm} rpm on: "), &assembly, &solution);
@@ -112,4 +106,21 @@ fn diagram(
     }
     progress.finish();
     Ok((found, warnings))
+}
+
+/// Has the shaft turn at a speed, rad/s, in all bearings.
+fn turn_shaft(scene: &mut SeveralScene, speed: f64) {
+    for bearing in &mut scene.bearings {
+        let mut own = bearing.scene.speed.clone().unwrap_or_default();
+        own.inner = Speed::constant(bearing.orientation.turned_angle(speed));
+        bearing.scene.speed = Some(own);
+    }
+}
+
+/// Keeps the lowest modes in which the shaft or a body takes part, and all before them that grow by themselves.
+fn keep_modes_of_shaft(modes: &mut Vec<WhirlMode>, number: usize) {
+    // Balls that creep back have no frequency.
+    modes.retain(|mode| mode.frequency > 0.0 || mode.damping_ratio < GROWS);
+    modes.retain(|mode| mode.shaft_share + mode.standing_share > OF_BALLS || mode.damping_ratio < GROWS);
+    modes.truncate(number);
 }

@@ -1,9 +1,10 @@
 //! `raceway check` of a scene with a list of bearings: sizes of each type, the shaft, and what is to be solved.
 
 use comm::print;
+use dynamics::RingMemory;
 use results::answer;
 use results::failure::Failure;
-use results::memory::forecast;
+use results::memory::{forecast, forecast_modes_of_list};
 use scene::{Analysis, SeveralScene, ShaftKind, build_assembly, have_same_rings};
 
 use crate::ring_sizes::print_rings;
@@ -20,7 +21,7 @@ pub fn check(scene: &SeveralScene) -> Result<(), Failure> {
     ));
     print_analysis(scene);
     print_effects(&scene.effects.names());
-    let mut peak = 0;
+    let (mut peak, mut memory): (usize, Vec<[Option<RingMemory>; 2]>) = (0, Vec::new());
     for (i, bearing) in scene.bearings.iter().enumerate() {
         let geometry = &assembly.bearings[i].model.geometry;
         print::line(format_args!(
@@ -39,12 +40,19 @@ pub fn check(scene: &SeveralScene) -> Result<(), Failure> {
                 "         its rings are those of {:?}, and are factored once",
                 scene.bearings[k].name
             ));
+            memory.push(memory[k]);
             continue;
         }
         let model = &assembly.bearings[i].model;
         let rings = print_rings(model)?;
         let (start, steps) = forecast((&scene.analysis, model), rings.memory, rings.motion);
         peak += steps.unwrap_or(0).max(start);
+        memory.push(rings.memory);
+    }
+    if let Analysis::Modes(wanted) = &scene.analysis {
+        let models = assembly.bearings.iter().map(|bearing| &bearing.model);
+        let bearings: Vec<_> = models.zip(memory).collect();
+        peak = peak.max(forecast_modes_of_list(wanted, &bearings));
     }
     print_shaft(scene, &assembly.shaft);
     print::line(format_args!(
@@ -73,11 +81,15 @@ fn print_analysis(scene: &SeveralScene) {
             "analysis dynamic: {} steps of {} s, a step file of each bearing every {}",
             dynamic.n_steps, dynamic.step, dynamic.output_every
         )),
+        Analysis::QuasiStatic(settings) => print::line(format_args!(
+            "analysis quasi-static: {} steps of {} s, a step file of each bearing every {}",
+            settings.n_steps, settings.step, settings.output_every
+        )),
         Analysis::Modes(wanted) => print::line(format_args!(
             "analysis modes, the {} lowest of all bearings with their shaft",
             wanted.number
         )),
-        _ => print::line(format_args!("analysis static")),
+        Analysis::Static => print::line(format_args!("analysis static")),
     }
 }
 

@@ -49,6 +49,9 @@ pub fn run(
     say_types(&solver, &assembly, &progress);
     progress.stage("equilibrium");
     let solution = solver.solve(&mut assembly, None).map_err(solving)?;
+    let mut laps = solver.laps();
+    // Their factors are not those of the modes.
+    drop(solver);
     progress.stage(&format!("{NAME}: factoring"));
     let settings = ModesSettings {
         number: wanted.number,
@@ -63,7 +66,6 @@ pub fn run(
     warnings.extend(warnings_of(scene, &found, wanted));
     let whole = set_of_several(&found, |mode| &mode.whole);
     write((scene, &assembly), &solution, &found, dir, start)?;
-    let mut laps = solver.laps();
     laps.merge(&found.laps);
     laps.add(READ, read);
     laps.add(TOTAL, start.elapsed().as_secs_f64());

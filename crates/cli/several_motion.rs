@@ -1,20 +1,18 @@
-//! `raceway run` of a `[dynamic]` scene with a list of bearings on one shaft, and `raceway resume` of its results.
+//! `raceway run` of a `[dynamic]` scene with a list of bearings on one shaft, and how it goes on.
 //!
 //! Every bearing has a folder with tables, step files and restart states as a bearing alone; the state of the shaft is
 //! stored in each of them. The tables beside the folders are in the frame of the shaft. Rank 0 writes for all; what
 //! ranks do together they do bearing by bearing, before it writes.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::time::Instant;
 
 use assembly::motion::AssemblyCache;
 use assembly::{Assembly, AssemblyMotion, AssemblySolver, AssemblyState};
-use comm::{Communicator, print};
-use dynamics::Model;
+use comm::print;
 use dynamics::costs::{EFFECTS, FACTOR};
-use results::cut::Cut;
 use results::failure::{Failure, agree};
-use results::files::{Files, ResumedFrom};
+use results::files::Files;
 use results::memory::Forecasts;
 use results::motion_fields::{Recorded, RestartState};
 use results::seat;
@@ -22,10 +20,8 @@ use results::several::{ListState, SeveralFindings, SeveralSummary, SeveralTables
 use results::several_print::print_solution;
 use results::shown::Shown;
 use results::snapshot::Snapshot;
-use results::state_arrays::Arrays;
 use results::stop::Stop;
 use results::summary::{Findings, READ, Summary, TOTAL};
-use results::survey::Survey;
 use results::watch::Watch;
 use scene::{Dynamic, Scene, SeveralScene};
 use timer::{Laps, Stopwatch};
@@ -35,11 +31,11 @@ use crate::motion::LAST_GOOD;
 use crate::options::Limits;
 use crate::progress::Progress;
 use crate::several::{self, make_folder, of_seats, require_same_list, say_types, solving, warnings_at};
+use crate::several_files::{create_files, resume_all, resume_tables};
 use crate::several_ledger::check_ledgers;
 use crate::several_read::{ReadList, read_list, require_memory_of_all};
 use crate::several_ready::{ready, require_space};
 use crate::several_state;
-use crate::shared::note_unshared;
 
 /// Runs the motion from its equilibrium.
 pub fn run(
@@ -80,7 +76,7 @@ pub fn run(
     agree(make_folder(scene, dir))?;
     let first = ListState::of_motion(&assembly, &motion, &state);
     let tables = agree(SeveralTables::create(dir, None, &first).map_err(Failure::from))?;
-    let files = create_files((scene, dir), (&assembly, &motion, &state), &placed, surveys)?;
+    let files = create_files((&assembly, dir), &placed, snapshots(&motion, &state), surveys)?;
     let mut march = ListMarch {
         watches: new_watches(&assembly),
         scene,
@@ -102,32 +98,19 @@ pub fn run(
     march.finish_run(progress, limits, warnings, start)
 }
 
-/// Goes on with a run in a folder of a list.
-pub fn resume_run(
-    dir: &Path,
-    step: Option<u64>,
-    changes: several_state::ListChanges<'_>,
-    limits: &Limits,
-) -> Result<(), Failure> {
-    let start = Instant::now();
-    let Some(stored) = several_state::read(dir, step, changes)? else {
-        return Ok(());
-    };
-    require_same_list(&stored.scene)?;
-    note_unshared(&stored.scene.bearings[0].scene);
-    resume(stored, limits, start)?;
-    print::line(format_args!("results: {}", dir.display()));
-    Ok(())
-}
-
 /// Goes on with a motion whose bearings and step have been read.
-fn resume(stored: several_state::StoredList, limits: &Limits, start: Instant) -> Result<(), Failure> {
+pub fn resume(
+    stored: several_state::StoredList,
+    dynamic: Dynamic,
+    limits: &Limits,
+    start: Instant,
+) -> Result<(), Failure> {
     let several_state::StoredList {
         dir,
         scene,
-        dynamic,
         step,
         bearings,
+        ..
     } = stored;
     let mut progress = Progress::new(dynamic.n_steps);
     progress.start_at(step);
@@ -149,15 +132,10 @@ fn resume(stored: several_state::StoredList, limits: &Limits, start: Instant) ->
     let first = ListState::of_motion(&assembly, &motion, &restored.state);
     // Nothing is changed before all is known to fit.
     let cuts = agree(SeveralTables::cuts(&dir, &first, step).map_err(Failure::from))?;
-    let (mut files, mut placed) = (Vec::new(), Vec::new());
-    for (i, (bearing, survey)) in bearings.into_iter().zip(surveys).enumerate() {
-        let (motion, state) = (&motion.bearings[i], &restored.state.bearings[i]);
-        let (model, reduction) = (&assembly.bearings[i].model, &restored.reductions[i]);
-        let found = (Snapshot::of_motion(motion, state), reduction);
-        let (own, scene) = resume_files(bearing, model, survey, found)?;
-        files.push(own);
-        placed.push(scene);
-    }
+    let snapshots = snapshots(&motion, &restored.state);
+    let model = |i: usize| &assembly.bearings[i].model;
+    let found = |i: usize| (model(i), snapshots[i].clone(), &restored.reductions[i]);
+    let (files, placed) = resume_all(bearings, surveys, found)?;
     let tables = resume_tables(&cuts, &dir)?;
     let march = ListMarch {
         scene: &scene,
@@ -179,60 +157,12 @@ fn resume(stored: several_state::StoredList, limits: &Limits, start: Instant) ->
     march.finish_run(progress, limits, warnings, start)
 }
 
-/// Makes the files of all bearings.
-fn create_files(
-    (scene, dir): (&SeveralScene, &Path),
-    (assembly, motion, state): (&Assembly, &AssemblyMotion<'_>, &AssemblyState),
-    placed: &[Scene],
-    surveys: Vec<Survey>,
-) -> Result<Vec<Files>, Failure> {
-    let mut files = Vec::new();
-    for (i, (placed, survey)) in placed.iter().zip(surveys).enumerate() {
-        let first = Snapshot::of_motion(&motion.bearings[i], &state.bearings[i]);
-        let (model, own) = (&assembly.bearings[i].model, dir.join(&scene.bearings[i].name));
-        files.push(agree(Files::create_part(
-            placed,
-            model,
-            &own,
-            &first,
-            survey,
-            &[],
-        ))?);
-    }
-    Ok(files)
-}
-
-/// Opens the files of a bearing to go on after the step that was read, at which it is as in the snapshot; returns its
-/// scene too.
-fn resume_files(
-    bearing: several_state::StoredBearing,
-    model: &Model,
-    survey: Survey,
-    (own, reduction): (Snapshot, &Arrays),
-) -> Result<(Files, Scene), Failure> {
-    let from = ResumedFrom {
-        step: bearing.record.step,
-        tables: bearing.record.tables.as_ref(),
-        warnings: &[],
-        reduction,
-    };
-    let files = Files::resume(&bearing.scene, model, bearing.lock, &own, survey, &from);
-    Ok((agree(files)?, bearing.scene))
-}
-
-/// Opens the tables beside the folders of the bearings; what stands after the step is moved aside.
-fn resume_tables(cuts: &[Cut], dir: &Path) -> Result<SeveralTables, Failure> {
-    if Communicator::world().is_root() {
-        results::files::say_folder(dir);
-    }
-    let mut aside = None;
-    let mut make_aside = || -> anyhow::Result<PathBuf> {
-        match &aside {
-            Some(folder) => Ok(PathBuf::clone(folder)),
-            None => Ok(aside.insert(checkpoint::new_superseded_folder(dir)?).clone()),
-        }
-    };
-    agree(SeveralTables::resume(cuts, &mut make_aside).map_err(Failure::from))
+/// What all bearings show.
+fn snapshots(motion: &AssemblyMotion<'_>, state: &AssemblyState) -> Vec<Snapshot> {
+    let pairs = motion.bearings.iter().zip(&state.bearings);
+    pairs
+        .map(|(motion, state)| Snapshot::of_motion(motion, state))
+        .collect()
 }
 
 fn new_watches(assembly: &Assembly) -> Vec<Watch> {

@@ -1,10 +1,11 @@
 //! A list of bearings as it is read: its meshes, and what only they tell.
 
 use assembly::Assembly;
+use dynamics::Model;
 use results::failure::Failure;
-use results::memory::require_memory;
+use results::memory::{require_memory, require_memory_of_modes};
 use results::survey::{Survey, say_doubts};
-use scene::{SeveralScene, build_assembly, doubts};
+use scene::{Analysis, SeveralScene, build_assembly, doubts};
 
 /// A list that has been read.
 pub struct ReadList {
@@ -35,8 +36,12 @@ pub fn read_list(
     })
 }
 
-/// Fails where a bearing needs more memory than there is.
+/// Fails where a bearing, or modes of all of them, need more memory than there is.
 pub fn require_memory_of_all(scene: &SeveralScene, assembly: &Assembly) -> Result<(), Failure> {
+    if let Analysis::Modes(wanted) = &scene.analysis {
+        let models: Vec<&Model> = assembly.bearings.iter().map(|bearing| &bearing.model).collect();
+        return require_memory_of_modes(wanted, &models);
+    }
     let mut bearings = assembly.bearings.iter();
     bearings.try_for_each(|bearing| require_memory(&scene.analysis, &bearing.model))
 }

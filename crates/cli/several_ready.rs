@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use assembly::{Assembly, AssemblyError, AssemblyMotion};
+use dynamics::effects::Now;
 use results::disk::Forecast;
 use results::failure::Failure;
 use scene::{Dynamic, SeveralScene, loads_on_shaft, settings};
@@ -35,9 +36,9 @@ pub fn ready<'a>(
 ) -> Result<AssemblyMotion<'a>, Failure> {
     let of_bearings = scene.bearings.iter().map(|b| settings(&b.scene, dynamic));
     let speed = scene.speed.clone().unwrap_or_default().inner;
-    let load = |time: f64| {
+    let load = |now: &Now<'_>| {
         let bearings = &assembly.bearings[..];
-        loads_on_shaft(scene, (&assembly.shaft, bearings), time).map_err(|error| AssemblyError::ShaftBody {
+        loads_on_shaft(scene, (&assembly.shaft, bearings), now).map_err(|error| AssemblyError::ShaftBody {
             problem: error.to_string(),
         })
     };

@@ -13,7 +13,9 @@ use results::reduction::take_arrays;
 use results::several::{BEARINGS_TABLE, SCENE_TEXT};
 use results::state_arrays::{self, Arrays};
 use results::watch::Watch;
-use scene::{Analysis, AnyScene, BearingOnShaft, Dynamic, MeshFiles, Scene, SeveralScene, difference};
+use scene::{
+    Analysis, AnyScene, BearingOnShaft, Dynamic, MeshFiles, QuasiStatic, Scene, SeveralScene, difference,
+};
 
 use crate::shared::{acquire, of_root};
 
@@ -27,9 +29,16 @@ const NEWTON: &str = "list_newton_iterations";
 pub struct StoredList {
     pub dir: PathBuf,
     pub scene: SeveralScene,
-    pub dynamic: Dynamic,
+    pub course: ListCourse,
     pub step: u64,
     pub bearings: Vec<StoredBearing>,
+}
+
+/// What a list goes on with.
+#[derive(Clone, Copy)]
+pub enum ListCourse {
+    Motion(Dynamic),
+    Equilibria(QuasiStatic),
 }
 
 /// A step of one of them.
@@ -89,17 +98,9 @@ pub fn restore(
         let at = || format!("step {step} of {}", bearing.folder.display());
         let mut arrays = bearing.record.state.clone();
         reductions.push(take_arrays(&mut arrays));
-        let of_shaft: Vec<Option<StateArray>> = [SHAFT, VELOCITY, LOADS, LEDGER, NEWTON]
-            .iter()
-            .map(|name| arrays.remove(*name))
-            .collect();
+        let of_shaft = [SHAFT, VELOCITY, LOADS, LEDGER, NEWTON].map(|name| arrays.remove(name));
         if *shaft.get_or_insert_with(|| of_shaft.clone()) != of_shaft {
-            return Err(anyhow!(
-                "{} has another state of the shaft than the other bearings of {}: its files are of another run",
-                at(),
-                dir.display()
-            )
-            .into());
+            return Err(other_shaft(&bearing.folder, (dir, step)));
         }
         let watch = Watch::take(&mut arrays, motion.n_balls());
         watches.push(watch.ok_or_else(|| anyhow!("{} has no count of contacts beyond their limits", at()))?);
@@ -129,6 +130,16 @@ pub fn restore(
         watches,
         reductions,
     })
+}
+
+/// A bearing whose step has another state of the shaft than the bearings before it.
+pub fn other_shaft(folder: &Path, (dir, step): (&Path, u64)) -> Failure {
+    anyhow!(
+        "step {step} of {} has another state of the shaft than the other bearings of {}: its files are of another run",
+        folder.display(),
+        dir.display()
+    )
+    .into()
 }
 
 /// What the command line says of the scene of a run that goes on.
@@ -202,7 +213,7 @@ fn read_step(
         .get(OVERRIDES)
         .map_or(Vec::new(), |text| text.lines().map(str::to_string).collect());
     let scene = scene_of(text, &path, &before, changes)?;
-    let Some(dynamic) = dynamic_after(&scene, dir, step)? else {
+    let Some((course, n_steps)) = course_after(&scene, dir, step)? else {
         return Ok(None);
     };
     let mut bearings = Vec::new();
@@ -213,44 +224,53 @@ fn read_step(
     print::note(format_args!(
         "resuming {} after step {step} of {}",
         dir.display(),
-        dynamic.n_steps
+        n_steps
     ));
     Ok(Some(StoredList {
         dir: dir.to_path_buf(),
         scene,
-        dynamic,
+        course,
         step,
         bearings,
     }))
 }
 
-/// The motion that goes on after a step; None if nothing is left to do.
-fn dynamic_after(scene: &SeveralScene, dir: &Path, step: u64) -> Result<Option<Dynamic>, Failure> {
-    let Analysis::Dynamic(dynamic) = &scene.analysis else {
-        return Err(anyhow!(
-            "{} holds results at rest; only a motion, a scene with [dynamic], can be resumed, run the scene again",
-            dir.display()
-        )
-        .into());
+/// The course that goes on after a step, and the number of its steps; None if nothing is left to do.
+fn course_after(scene: &SeveralScene, dir: &Path, step: u64) -> Result<Option<(ListCourse, u64)>, Failure> {
+    let (course, table, n_steps, duration) = match &scene.analysis {
+        Analysis::Dynamic(dynamic) => {
+            let course = ListCourse::Motion(*dynamic);
+            (course, "dynamic", dynamic.n_steps, dynamic.duration)
+        }
+        Analysis::QuasiStatic(settings) => {
+            let course = ListCourse::Equilibria(*settings);
+            (course, "quasi_static", settings.n_steps, settings.duration)
+        }
+        Analysis::Static | Analysis::Sweep(_) | Analysis::Modes(_) => {
+            return Err(anyhow!(
+                "{} holds results at rest; only a run over time, a scene with [dynamic] or [quasi_static], can be \
+                 resumed, run the scene again",
+                dir.display()
+            )
+            .into());
+        }
     };
-    if step > dynamic.n_steps {
+    if step > n_steps {
         return Err(anyhow!(
-            "the run is at step {step}, beyond dynamic.duration = {} s; expected a longer duration, or an earlier \
-             --step",
-            dynamic.duration
+            "the run is at step {step}, beyond {table}.duration = {duration} s; expected a longer duration, or an \
+             earlier --step"
         )
         .into());
     }
-    if step == dynamic.n_steps {
+    if step == n_steps {
         print::line(format_args!(
-            "nothing to do: {} has finished with step {step} of {}; a longer duration goes on from there, --set \
-             dynamic.duration=...",
-            dir.display(),
-            dynamic.n_steps
+            "nothing to do: {} has finished with step {step} of {n_steps}; a longer duration goes on from there, --set \
+             {table}.duration=...",
+            dir.display()
         ));
         return Ok(None);
     }
-    Ok(Some(*dynamic))
+    Ok(Some((course, n_steps)))
 }
 
 /// The step of a bearing, whose scene and meshes must be those that the list has `now`; scenes are read at `path`, with

@@ -108,19 +108,7 @@ fn linearise(scene: &SeveralScene) -> Result<SeveralStiffness, Failure> {
                 .shaft
                 .displacement_at(results.position, &solution.shaft.displacements),
         });
-        for (i, bearing) in results.bearings.iter_mut().enumerate() {
-            let speeds = point.bearings[i].scene.speed.clone().unwrap_or_default();
-            let speeds = Side::BOTH.map(|side| speeds.of(side).at(0.0));
-            bearing.results.points.push(StiffnessAt {
-                value: *value,
-                speed,
-                stiffness: linear.stiffness[i],
-                damping: linear.damping[i],
-                load_stiffness: Default::default(),
-                operating_point: OperatingPoint::new(&solution.bearings[i], speeds),
-                ripple: None,
-            });
-        }
+        note_bearings((*value, point, speed), &linear, &solution, &mut results);
         note_couplings(&linear, &mut results);
         results
             .warnings
@@ -131,6 +119,28 @@ fn linearise(scene: &SeveralScene) -> Result<SeveralStiffness, Failure> {
     progress.finish();
     results.warnings.extend(felt_through(&assembly));
     Ok(results)
+}
+
+/// Notes the matrix of each bearing at a point: swept value, load case, speed of the shaft, rad/s.
+fn note_bearings(
+    (value, point, speed): (Option<f64>, &SeveralScene, f64),
+    linear: &LinearAssembly,
+    solution: &AssemblySolution,
+    results: &mut SeveralStiffness,
+) {
+    for (i, bearing) in results.bearings.iter_mut().enumerate() {
+        let speeds = point.bearings[i].scene.speed.clone().unwrap_or_default();
+        let speeds = Side::BOTH.map(|side| speeds.of(side).at(0.0));
+        bearing.results.points.push(StiffnessAt {
+            value,
+            speed,
+            stiffness: linear.stiffness[i],
+            damping: linear.damping[i],
+            load_stiffness: Default::default(),
+            operating_point: OperatingPoint::new(&solution.bearings[i], speeds),
+            ripple: None,
+        });
+    }
 }
 
 /// Notes what bearings do to each other through bodies at a point.

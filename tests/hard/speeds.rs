@@ -1,6 +1,6 @@
 //! Speeds: run-up, reversal, a stop dead, light balls at high speed, and a million steps of steady running.
 
-use dynamics::effects::{BallCentrifugal, FrameRotation, GyroscopicMoment};
+use dynamics::effects::{BallCentrifugal, FrameRotation, GyroscopicMoment, MomentShares};
 use dynamics::kinematics::{BallSpeeds, Speed};
 use dynamics::motion::{Motion, MotionSettings};
 use dynamics::{Model, StaticSolution};
@@ -96,7 +96,7 @@ fn gyroscopic_alone(record: &mut Record) {
         model.effects.push(Box::new(GyroscopicMoment {
             speeds: Speed::constant(40_000.0 * RPM).into(),
             slip: [0.0; 2],
-            shares: [0.0, 2.0],
+            shares: MomentShares::OUTER_CONTROL,
             ball_speeds: BallSpeeds::FreeAngle,
         }));
         let rest = match equilibrium_at(&model, 0.0) {
@@ -206,7 +206,7 @@ fn run_up_flexible(record: &mut Record) {
     model.effects.push(Box::new(GyroscopicMoment {
         speeds: speed.clone().into(),
         slip: [0.0; 2],
-        shares: [0.0, 2.0],
+        shares: MomentShares::OUTER_CONTROL,
         ball_speeds: BallSpeeds::FreeAngle,
     }));
     let course = transient(&model, turning(speed, 5e-6), 3e-3);
@@ -224,7 +224,7 @@ fn light(gyroscopic: bool) -> (Model, StaticSolution, MotionSettings) {
             model.effects.push(Box::new(GyroscopicMoment {
                 speeds: speed.clone().into(),
                 slip: [0.0; 2],
-                shares: [0.0, 2.0],
+                shares: MomentShares::OUTER_CONTROL,
                 ball_speeds: BallSpeeds::FreeAngle,
             }));
         }

@@ -3,9 +3,10 @@
 use std::sync::Arc;
 
 use contact::Side;
+use dynamics::displacements::Displacements;
 use dynamics::equilibrium::SearchScales;
 use dynamics::statics::ContactColumns;
-use dynamics::{Model, StaticSolution, StaticSolver};
+use dynamics::{Model, Pose, StaticSolution, StaticSolver};
 use timer::Laps;
 
 use crate::error::AssemblyError;
@@ -55,6 +56,17 @@ pub struct AssemblySolution {
     on_bodies: Vec<Vec<f64>>,
 }
 
+/// What of an equilibrium the next one starts from.
+#[derive(Clone, Debug, PartialEq)]
+pub struct AssemblyStart {
+    /// Displacements of the shaft's dofs, m and rad.
+    pub shaft: Vec<f64>,
+    /// Those of every bearing, in its own frame.
+    pub bearings: Vec<Displacements>,
+    /// Forces on the bodies that carry several bearings, N, over the functions of all seats of each.
+    pub on_bodies: Vec<Vec<f64>>,
+}
+
 /// The shaft in balance, and the bearings.
 type SettledAssembly = (SettledShaft, Vec<StaticSolution>);
 
@@ -99,6 +111,18 @@ impl Assembly {
         let orientation = self.bearings[bearing].place.orientation;
         let reaction = solution.bearings[bearing].shaft_reaction;
         orientation.turned(reaction).map(|f| 0.0 - f)
+    }
+}
+
+impl AssemblySolution {
+    /// What the next equilibrium starts from.
+    pub fn as_start(&self) -> AssemblyStart {
+        let displacements = |solution: &StaticSolution| solution.displacements.clone();
+        AssemblyStart {
+            shaft: self.shaft.displacements.clone(),
+            bearings: self.bearings.iter().map(displacements).collect(),
+            on_bodies: self.on_bodies.clone(),
+        }
     }
 }
 
@@ -152,6 +176,22 @@ impl AssemblySolver {
         &self.bodies
     }
 
+    /// The tangents of the contacts that each bearing goes on with: with them, an equilibrium from the same start has
+    /// the same bits.
+    pub fn columns(&self) -> &[ContactColumns] {
+        &self.columns
+    }
+
+    /// Goes on with tangents that were found before.
+    pub fn restore_columns(&mut self, columns: Vec<ContactColumns>) {
+        self.columns = columns;
+    }
+
+    /// No forces on the bodies that carry several bearings: so many as [`AssemblyStart::on_bodies`] has.
+    pub fn no_forces_on_bodies(&self) -> Vec<Vec<f64>> {
+        self.bodies.iter().map(SharedBody::none).collect()
+    }
+
     /// Wall time so far.
     pub fn laps(&self) -> Laps {
         let mut laps = Laps::default();
@@ -168,18 +208,30 @@ impl AssemblySolver {
         assembly: &mut Assembly,
         start: Option<&AssemblySolution>,
     ) -> Result<AssemblySolution, AssemblyError> {
+        let poses = vec![Pose::default(); assembly.bearings.len()];
+        self.solve_at(assembly, &poses, start.map(AssemblySolution::as_start).as_ref())
+    }
+
+    /// The same at another instant, at which the parts of every bearing stand as its pose in its own frame says; the
+    /// loads on the shaft are those of the assembly.
+    pub fn solve_at(
+        &mut self,
+        assembly: &mut Assembly,
+        poses: &[Pose],
+        start: Option<&AssemblyStart>,
+    ) -> Result<AssemblySolution, AssemblyError> {
         let is_flexible = |b: &MountedBearing| Side::BOTH.iter().any(|&side| b.model.ring(side).is_some());
         let at = match start {
-            Some(solution) => solution.shaft.displacements.clone(),
+            Some(start) => start.shaft.clone(),
             None if assembly.bearings.iter().any(is_flexible) => {
                 let at = vec![0.0; assembly.shaft.n()];
-                self.settle(assembly, SolvedRings::Rigid, &at, None)?
+                self.settle(assembly, (SolvedRings::Rigid, poses), &at, None)?
                     .0
                     .displacements
             }
             None => vec![0.0; assembly.shaft.n()],
         };
-        let found = self.settle_in_bodies(assembly, &at, start);
+        let found = self.settle_in_bodies(assembly, poses, &at, start);
         if let (Err(_), Some(start)) = (&found, start) {
             // What failed is forgotten: the bearings are those of the last solution again.
             self.tell(&start.on_bodies, assembly);
@@ -197,12 +249,13 @@ impl AssemblySolver {
     fn settle_in_bodies(
         &mut self,
         assembly: &mut Assembly,
+        poses: &[Pose],
         at: &[f64],
-        start: Option<&AssemblySolution>,
+        start: Option<&AssemblyStart>,
     ) -> Result<AssemblySolution, AssemblyError> {
         let mut forces = match start {
-            Some(solution) => solution.on_bodies.clone(),
-            None => self.bodies.iter().map(SharedBody::none).collect(),
+            Some(start) => start.on_bodies.clone(),
+            None => self.no_forces_on_bodies(),
         };
         let mut mixings: Vec<Mixing> = self.bodies.iter().map(|_| Mixing::default()).collect();
         let (mut before, mut history): (Option<SettledAssembly>, Vec<f64>) = (None, Vec::new());
@@ -211,15 +264,12 @@ impl AssemblySolver {
         loop {
             self.tell(&forces, assembly);
             let at = before.as_ref().map_or(at, |(shaft, _)| &shaft.displacements);
-            let (mut shaft, bearings) = self.settle(
-                assembly,
-                SolvedRings::AsTheyAre,
-                at,
-                match &before {
-                    Some((_, bearings)) => Some(bearings),
-                    None => start.map(|solution| &solution.bearings),
-                },
-            )?;
+            let starts: Option<Vec<&Displacements>> = match &before {
+                Some((_, bearings)) => Some(bearings.iter().map(|b| &b.displacements).collect()),
+                None => start.map(|start| start.bearings.iter().collect()),
+            };
+            let rings = (SolvedRings::AsTheyAre, poses);
+            let (mut shaft, bearings) = self.settle(assembly, rings, at, starts)?;
             let found = self.bodies.iter();
             let found = found.map(|b| b.forces(&assembly.bearings, &bearings));
             let found = found.collect::<Result<Vec<Vec<f64>>, AssemblyError>>()?;
@@ -253,13 +303,13 @@ impl AssemblySolver {
         }
     }
 
-    /// The shaft in balance on bearings with these rings, and their solutions.
+    /// The shaft in balance on bearings with these rings, which stand so, and their solutions.
     fn settle(
         &mut self,
         assembly: &mut Assembly,
-        rings: SolvedRings,
+        (rings, poses): (SolvedRings, &[Pose]),
         at: &[f64],
-        start: Option<&Vec<StaticSolution>>,
+        start: Option<Vec<&Displacements>>,
     ) -> Result<SettledAssembly, AssemblyError> {
         let (mounts, scales) = (assembly.mounts(), assembly.scales());
         let problem = Problem {
@@ -278,7 +328,8 @@ impl AssemblySolver {
                 model: &mut bearing.model,
                 solver,
                 columns,
-                start: start.map(|solutions| &solutions[i]),
+                pose: poses[i],
+                start: start.as_ref().map(|starts| starts[i]),
                 last: None,
             });
         let mut supports = BearingSupports {

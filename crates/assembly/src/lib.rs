@@ -31,7 +31,7 @@ mod whirl_in_bodies;
 mod whirl_kept;
 mod whirl_rows;
 
-pub use assembly::{Assembly, AssemblySolution, AssemblySolver};
+pub use assembly::{Assembly, AssemblySolution, AssemblySolver, AssemblyStart};
 pub use beam::{BeamSection, BeamShaft, PointMass};
 pub use error::AssemblyError;
 pub use housing::HousedTogether;

@@ -1,5 +1,6 @@
 //! What holds the shaft at a place: a bearing, or a linear spring.
 
+use dynamics::displacements::Displacements;
 use dynamics::statics::ContactColumns;
 use dynamics::stiffness::{N_SHAFT, ShaftMatrix};
 use dynamics::{DynamicsError, Linearisation, Model, Pose, ShaftDof, StaticSolution, StaticSolver};
@@ -64,8 +65,10 @@ pub struct BearingSupport<'a> {
     pub solver: usize,
     /// The columns of this bearing: those of other bearings of its type stay as they are.
     pub columns: &'a mut ContactColumns,
-    /// The solution from which the first starts.
-    pub start: Option<&'a StaticSolution>,
+    /// Where its parts stand.
+    pub pose: Pose,
+    /// Where the first solution starts from.
+    pub start: Option<&'a Displacements>,
     /// The last solution, from which the next starts.
     pub last: Option<StaticSolution>,
 }
@@ -84,11 +87,8 @@ impl Supports for BearingSupports<'_> {
         let solver = &mut self.solvers[bearing.solver];
         bearing.model.shaft = at.map(ShaftDof::Prescribed);
         solver.swap_columns(bearing.columns);
-        let found = solver.solve_at(
-            bearing.model,
-            &Pose::default(),
-            bearing.last.as_ref().or(bearing.start),
-        );
+        let last = bearing.last.as_ref().map(|solution| &solution.displacements);
+        let found = solver.solve_from(bearing.model, &bearing.pose, last.or(bearing.start));
         solver.swap_columns(bearing.columns);
         let solution = found?;
         let tangent = Linearisation::as_solved(bearing.model, &solution)?.stiffness()?;

@@ -172,24 +172,30 @@ fn whirl_body(joints: &[WhirlJoint<'_>]) -> Result<WhirlBody, AssemblyError> {
         |square| square.powi(-2),
         &mut mass_above,
     );
-    let mut flexibility_beside: Vec<f64> = flexibility_above.iter().map(|f| -f).collect();
-    for own in seats.iter().map(|seat| seat.functions.clone()) {
-        for i in own.clone() {
-            let row = n_functions * i + own.start..n_functions * i + own.end;
-            let sums = flexibility_beside[row.clone()].iter_mut();
-            sums.zip(&body.flexibility[row]).for_each(|(sum, f)| *sum += f);
-        }
-    }
     Ok(WhirlBody {
         on_shaft: on_shaft.transpose()?,
         squares: squares[..n_swinging].to_vec(),
         rows: swinging.to_vec(),
-        seats,
         n_functions,
+        flexibility_beside: flexibility_beside(&seats, &body.flexibility, &flexibility_above),
         flexibility_above,
-        flexibility_beside,
+        seats,
         mass_above,
     })
+}
+
+/// What bearings have of the flexibility of their own seats, less that of the oscillators above.
+fn flexibility_beside(seats: &[WhirlSeat], whole: &[f64], above: &[f64]) -> Vec<f64> {
+    let n = whole.len().isqrt();
+    let mut beside: Vec<f64> = above.iter().map(|f| -f).collect();
+    for own in seats.iter().map(|seat| seat.functions.clone()) {
+        for i in own.clone() {
+            let row = n * i + own.start..n * i + own.end;
+            let sums = beside[row.clone()].iter_mut();
+            sums.zip(&whole[row]).for_each(|(sum, f)| *sum += f);
+        }
+    }
+    beside
 }
 
 /// Adds the sum over oscillators of y y^T times a weight of their squares.

@@ -15,7 +15,7 @@ use assembly::{
     Assembly, AssemblyMotion, AssemblySolver, AssemblyState, BeamSection, BeamShaft, Orientation, PointMass,
 };
 use contact::Side;
-use dynamics::effects::{AxialForce, RadialForce};
+use dynamics::effects::{AxialForce, Now, RadialForce};
 use dynamics::kinematics::{RingSpeeds, Speed};
 use dynamics::motion::{Motion, MotionSettings, StepCache};
 use dynamics::{DampingLaws, Model, ShaftDof};
@@ -105,9 +105,9 @@ fn run(
         .map(|b| MotionSettings::conserving(dt, seen(speed, b.place.orientation)));
     let settings: Vec<_> = settings.collect();
     let shaft = assembly.shaft.clone();
-    let load_at = |time: f64| {
+    let load_at = |now: &Now<'_>| {
         let mut sum = vec![0.0; shaft.n()];
-        shaft.add_load(0.0, load(time), &mut sum);
+        shaft.add_load(0.0, load(now.time), &mut sum);
         Ok(sum)
     };
     let motion = AssemblyMotion::new(&assembly, settings, speed.clone(), Box::new(load_at)).unwrap();

@@ -152,6 +152,22 @@ pub enum SurroundingError {
         /// Allowed difference, per cent.
         limit: f64,
     },
+    /// The ring stands beside its seat.
+    #[error(
+        "the ring stands beside {what}: its middle lies {beside_mm:.4} mm along z from that of the seat, which is \
+         {width_mm:.4} mm wide; expected at most {most_mm:.4} mm: give another z of the seat, or none for the middle \
+         of its group"
+    )]
+    Beside {
+        /// The seat.
+        what: String,
+        /// Distance of the middles, mm.
+        beside_mm: f64,
+        /// Width of the ring's seat, mm.
+        width_mm: f64,
+        /// Allowed distance, mm.
+        most_mm: f64,
+    },
     /// The nodes of a seat do not tell the functions apart.
     #[error(
         "{what} has {nodes} nodes, too few or too uneven for {functions} functions of the seat; use a finer mesh \

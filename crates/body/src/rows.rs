@@ -11,11 +11,11 @@ const LANES: usize = 8;
 #[derive(Clone, Debug)]
 pub struct SeatRows {
     n_nodes: usize,
-    kind: RowKind,
+    kind: RowForm,
 }
 
 #[derive(Clone, Debug)]
-enum RowKind {
+enum RowForm {
     /// `[n][3 n_nodes]` flat.
     Whole(Vec<f64>),
     /// Three functions for each row of factors, `[n / 3][n_nodes]` flat, and the directions of the three at each node.
@@ -30,7 +30,7 @@ impl SeatRows {
     pub(crate) fn whole(n_nodes: usize, rows: Vec<f64>) -> SeatRows {
         SeatRows {
             n_nodes,
-            kind: RowKind::Whole(rows),
+            kind: RowForm::Whole(rows),
         }
     }
 
@@ -38,15 +38,15 @@ impl SeatRows {
     pub(crate) fn cylinder(factors: Vec<f64>, directions: Vec<[[f64; 3]; 3]>) -> SeatRows {
         SeatRows {
             n_nodes: directions.len(),
-            kind: RowKind::Cylinder { factors, directions },
+            kind: RowForm::Cylinder { factors, directions },
         }
     }
 
     /// Number of functions.
     pub fn n(&self) -> usize {
         match &self.kind {
-            RowKind::Whole(rows) => rows.len() / (3 * self.n_nodes).max(1),
-            RowKind::Cylinder { factors, .. } => 3 * (factors.len() / self.n_nodes.max(1)),
+            RowForm::Whole(rows) => rows.len() / (3 * self.n_nodes).max(1),
+            RowForm::Cylinder { factors, .. } => 3 * (factors.len() / self.n_nodes.max(1)),
         }
     }
 
@@ -54,8 +54,8 @@ impl SeatRows {
     pub fn bytes(&self) -> usize {
         size_of::<f64>()
             * match &self.kind {
-                RowKind::Whole(rows) => rows.len(),
-                RowKind::Cylinder { factors, directions } => factors.len() + 9 * directions.len(),
+                RowForm::Whole(rows) => rows.len(),
+                RowForm::Cylinder { factors, directions } => factors.len() + 9 * directions.len(),
             }
     }
 
@@ -63,19 +63,19 @@ impl SeatRows {
     pub(crate) fn half_turn(&mut self) {
         let turn = |v: &mut [f64; 3]| (v[1], v[2]) = (-v[1], -v[2]);
         match &mut self.kind {
-            RowKind::Whole(rows) => rows.as_chunks_mut::<3>().0.iter_mut().for_each(turn),
-            RowKind::Cylinder { directions, .. } => directions.as_flattened_mut().iter_mut().for_each(turn),
+            RowForm::Whole(rows) => rows.as_chunks_mut::<3>().0.iter_mut().for_each(turn),
+            RowForm::Cylinder { directions, .. } => directions.as_flattened_mut().iter_mut().for_each(turn),
         }
     }
 
     /// Values of all functionals from vectors at the nodes, `[n_nodes][3]` flat.
     pub fn measure(&self, here: &[f64]) -> Vec<f64> {
         match &self.kind {
-            RowKind::Whole(rows) => {
+            RowForm::Whole(rows) => {
                 let row = |row: &[f64]| row.iter().zip(here).map(|(a, b)| a * b).sum();
                 rows.chunks_exact((3 * self.n_nodes).max(1)).map(row).collect()
             }
-            RowKind::Cylinder { factors, directions } => {
+            RowForm::Cylinder { factors, directions } => {
                 let mut parts = [const { Vec::new() }; 3];
                 for (e, u) in directions.iter().zip(here.as_chunks::<3>().0) {
                     for (part, e) in parts.iter_mut().zip(e) {
@@ -92,12 +92,12 @@ impl SeatRows {
     /// Adds what forces on all functions do to the nodes, `[n_nodes][3]` flat.
     pub fn add_loads(&self, forces: &[f64], here: &mut [f64]) {
         match &self.kind {
-            RowKind::Whole(rows) => {
+            RowForm::Whole(rows) => {
                 for (row, force) in rows.chunks_exact((3 * self.n_nodes).max(1)).zip(forces) {
                     here.iter_mut().zip(row).for_each(|(load, w)| *load += force * w);
                 }
             }
-            RowKind::Cylinder { factors, directions } => {
+            RowForm::Cylinder { factors, directions } => {
                 let mut parts = [const { Vec::new() }; 3].map(|mut part: Vec<f64>| {
                     part.resize(self.n_nodes, 0.0);
                     part
@@ -120,10 +120,10 @@ impl SeatRows {
     /// One functional, `[n_nodes][3]` flat.
     pub fn row(&self, function: usize) -> Vec<f64> {
         match &self.kind {
-            RowKind::Whole(rows) => {
+            RowForm::Whole(rows) => {
                 rows[3 * self.n_nodes * function..3 * self.n_nodes * (function + 1)].to_vec()
             }
-            RowKind::Cylinder { factors, directions } => {
+            RowForm::Cylinder { factors, directions } => {
                 let row = &factors[self.n_nodes * (function / 3)..self.n_nodes * (function / 3 + 1)];
                 let nodes = row.iter().zip(directions);
                 nodes.flat_map(|(w, e)| e[function % 3].map(|e| w * e)).collect()

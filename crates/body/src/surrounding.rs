@@ -21,6 +21,8 @@ const BLOCK: usize = 16;
 const RADIUS_TOLERANCE: f64 = 2e-3;
 /// The same of the widths.
 const WIDTH_TOLERANCE: f64 = 1e-2;
+/// Allowed distance along z of the middles of ring and seat, share of the width: a chamfer.
+const PLACE_TOLERANCE: f64 = 0.1;
 
 /// A seat of a body and the functions that are tied there.
 #[derive(Clone, Debug)]
@@ -386,6 +388,21 @@ struct SeatJoint {
     is_turned: bool,
 }
 
+/// Where the ring's middle stands along the seat whose own middle is `middle`, m.
+fn middle_of_ring(what: &str, seat: &BodySeat, middle: f64) -> Result<f64, SurroundingError> {
+    let of_ring = seat.middle.unwrap_or(middle);
+    let (beside, width) = ((of_ring - middle).abs(), 2.0 * seat.space.half_width);
+    if beside > PLACE_TOLERANCE * width {
+        return Err(SurroundingError::Beside {
+            what: what.to_string(),
+            beside_mm: 1e3 * beside,
+            width_mm: 1e3 * width,
+            most_mm: 1e3 * PLACE_TOLERANCE * width,
+        });
+    }
+    Ok(of_ring)
+}
+
 /// The functions of a seat on the body's side.
 fn joint(
     body: &str,
@@ -422,7 +439,7 @@ fn joint(
             limit: 100.0 * WIDTH_TOLERANCE,
         });
     }
-    let middle = seat.middle.unwrap_or(cylinder.middle());
+    let middle = middle_of_ring(&what, seat, cylinder.middle())?;
     let shift = space.middle - middle;
     let place = |node: usize| {
         let [x, y, z] = in_ring(node);

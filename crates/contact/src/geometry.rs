@@ -25,20 +25,28 @@ impl Side {
         self as usize
     }
 
+    /// Of two values the one of this side.
+    pub fn choose<T>(self, inner: T, outer: T) -> T {
+        match self {
+            Side::Inner => inner,
+            Side::Outer => outer,
+        }
+    }
+
+    /// What fallible work makes of the inner side, then of the outer one; nothing is begun after a failure.
+    pub fn try_both<T, E>(mut of: impl FnMut(Side) -> Result<T, E>) -> Result<[T; 2], E> {
+        let [inner, outer] = Side::BOTH;
+        Ok([of(inner)?, of(outer)?])
+    }
+
     /// Name used in files and messages.
     pub fn name(self) -> &'static str {
-        match self {
-            Side::Inner => "inner",
-            Side::Outer => "outer",
-        }
+        self.choose("inner", "outer")
     }
 
     /// +1 where the groove bottom lies outside the groove centre (outer ring), -1 inside (inner ring).
     pub fn sign(self) -> f64 {
-        match self {
-            Side::Inner => -1.0,
-            Side::Outer => 1.0,
-        }
+        self.choose(-1.0, 1.0)
     }
 }
 
@@ -103,10 +111,7 @@ impl BearingGeometry {
 
     /// Groove radius of one raceway, m.
     pub fn groove_radius(&self, side: Side) -> f64 {
-        match side {
-            Side::Inner => self.inner_groove_radius,
-            Side::Outer => self.outer_groove_radius,
-        }
+        side.choose(self.inner_groove_radius, self.outer_groove_radius)
     }
 
     /// Principal curvature of a raceway in the rolling direction where a ball touches it at the free contact angle,
@@ -124,10 +129,10 @@ impl BearingGeometry {
 
     /// Radius of the circle of groove centres, m.
     pub fn centre_radius(&self, side: Side) -> f64 {
-        match side {
-            Side::Inner => 0.5 * self.inner_raceway_diameter + self.inner_groove_radius,
-            Side::Outer => 0.5 * self.outer_raceway_diameter - self.outer_groove_radius,
-        }
+        side.choose(
+            0.5 * self.inner_raceway_diameter + self.inner_groove_radius,
+            0.5 * self.outer_raceway_diameter - self.outer_groove_radius,
+        )
     }
 
     /// Diametral clearance P_d = D_e - d_i - 2 D_w, m; negative is interference.
@@ -169,13 +174,9 @@ impl BearingGeometry {
     /// Ball centre `[radial, axial]` in the reference position, m: on the line of groove centres, with equal
     /// gap (or interference) to both raceways.
     pub fn ball_centre(&self) -> [f64; 2] {
-        let (inner, outer) = (self.groove_centre(Side::Inner), self.groove_centre(Side::Outer));
-        midway(
-            inner,
-            outer,
-            self.touching_distance(Side::Inner),
-            self.touching_distance(Side::Outer),
-        )
+        let [inner, outer] = Side::BOTH.map(|side| self.groove_centre(side));
+        let [touching_inner, touching_outer] = Side::BOTH.map(|side| self.touching_distance(side));
+        midway(inner, outer, touching_inner, touching_outer)
     }
 
     /// Pitch diameter, twice the ball centre's radius in the reference position, m.

@@ -146,9 +146,6 @@ impl BallResult {
 
     /// The contact with the ring of one side.
     pub fn contact(&self, side: Side) -> &ContactResult {
-        match side {
-            Side::Inner => &self.inner,
-            Side::Outer => &self.outer,
-        }
+        side.choose(&self.inner, &self.outer)
     }
 }

@@ -4,7 +4,7 @@ use contact::Side;
 
 use crate::bearing::{BearingParts, FIRST_BALL, SHAFT};
 use crate::interactions::raceway_contact::{SiteState, on_rings};
-use crate::system::{Body, System};
+use crate::system::{BodyId, System};
 
 /// Displacements of everything small: m, rad.
 #[derive(Clone, Debug, PartialEq)]
@@ -49,7 +49,7 @@ impl BearingParts {
     pub fn displacements(&self, x: &[f64], held: &Displacements) -> Displacements {
         let system = self.system();
         let grooves = |side: Side| match self.elastic(side) {
-            Some(i) => x[system.unknowns(Body::Elastic(i))].as_chunks().0.to_vec(),
+            Some(i) => x[system.unknowns(BodyId::Elastic(i))].as_chunks().0.to_vec(),
             None => held.grooves[side.index()].clone(),
         };
         Displacements {

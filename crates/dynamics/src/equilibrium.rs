@@ -13,7 +13,7 @@ use crate::bodies::AXES;
 use crate::condensation::Condensation;
 use crate::displacements::Displacements;
 use crate::error::DynamicsError;
-use crate::footprint::loaded;
+use crate::footprint::{loaded, sizes};
 use crate::interactions::raceway_contact::on_rings;
 use crate::model::MAX_TILT;
 use crate::system::newton::{Policy, RoundOff, Shortening};
@@ -227,7 +227,7 @@ pub fn centre_unloaded(parts: &BearingParts, u: &mut Displacements) {
     // The weight of a ball across its meridian plane leaves round-off in that plane.
     let weightless = 4.0 * f64::EPSILON * loads.iter().copied().fold(0.0, f64::max);
     let states = parts.states_at(u);
-    let loaded = loaded(&on_rings(&states));
+    let loaded = loaded(sizes(&on_rings(&states)));
     let pairs = parts.contacts.sites.chunks_exact(2).zip(states.chunks_exact(2));
     for ((pair, states), loaded) in pairs.zip(loaded.chunks_exact(2)) {
         let ball = pair[0].ball;

@@ -49,7 +49,7 @@ pub fn place(
 ) -> Result<Vec<Footprint>, DynamicsError> {
     let ring = model.ring(side).expect("only flexible rings have footprints");
     let n_balls = model.geometry.n_balls;
-    let loaded = loaded(forces);
+    let loaded = loaded(sizes(forces));
     let mut feet = Vec::with_capacity(n_balls);
     for ball in 0..n_balls {
         let index = 2 * ball + side.index();
@@ -93,11 +93,15 @@ fn place_patch(
     })
 }
 
-/// Which contacts carry load, by site, from the site forces.
-pub fn loaded(forces: &[[f64; 2]]) -> Vec<bool> {
-    let size = |f: &[f64; 2]| f[0].hypot(f[1]);
-    let limit = LOADED_SHARE * forces.iter().map(size).fold(0.0, f64::max);
-    forces.iter().map(|f| size(f) > limit).collect()
+/// Which contacts carry load, by site, from the sizes of their forces, N.
+pub fn loaded(forces: impl Iterator<Item = f64> + Clone) -> Vec<bool> {
+    let limit = LOADED_SHARE * forces.clone().fold(0.0, f64::max);
+    forces.map(|force| force > limit).collect()
+}
+
+/// Sizes of forces [radial, axial], N.
+pub fn sizes(forces: &[[f64; 2]]) -> impl Iterator<Item = f64> + Clone {
+    forces.iter().map(|[radial, axial]| radial.hypot(*axial))
 }
 
 /// The contact angle if it is on the groove, else the nearest place inside the rim: unloaded balls may be anywhere, and
@@ -119,7 +123,7 @@ pub fn check_on_groove(
     forces: &[[f64; 2]],
 ) -> Result<(), DynamicsError> {
     let of_ring = |site: &Site| site.side == surface.groove.side;
-    let contacts = sites.iter().zip(states).zip(loaded(forces));
+    let contacts = sites.iter().zip(states).zip(loaded(sizes(forces)));
     for ((site, state), _) in contacts.filter(|((site, _), loaded)| *loaded && of_ring(site)) {
         require_on_groove(surface, site.ball, state.angle)?;
     }
@@ -132,7 +136,7 @@ pub fn check_in_grooves(
     states: &[SiteState],
     forces: &[[f64; 2]],
 ) -> Result<(), DynamicsError> {
-    let contacts = sites.iter().zip(states).zip(loaded(forces));
+    let contacts = sites.iter().zip(states).zip(loaded(sizes(forces)));
     for ((site, state), _) in contacts.filter(|(_, loaded)| *loaded) {
         require_in_groove(site, state.angle)?;
     }

@@ -98,10 +98,7 @@ impl Default for RingSpeeds {
 impl RingSpeeds {
     /// Of one ring.
     pub fn of(&self, side: Side) -> &Speed {
-        match side {
-            Side::Inner => &self.inner,
-            Side::Outer => &self.outer,
-        }
+        side.choose(&self.inner, &self.outer)
     }
 
     /// Whether both rings stand at all times.
@@ -199,7 +196,7 @@ impl Kinematics {
             let radius = 1.0 + side.sign() * ratio * angle.cos();
             (1.0 - slip[side.index()]) * radius / (angle - pitch).cos()
         };
-        let (inner, outer) = (rolling(Side::Inner), rolling(Side::Outer));
+        let [inner, outer] = Side::BOTH.map(rolling);
         let cage = inner / (inner + outer);
         Kinematics {
             cage,

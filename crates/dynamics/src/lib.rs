@@ -40,6 +40,7 @@ pub mod footprint;
 pub mod frame;
 pub mod pose;
 pub mod raceway;
+pub mod shoulders;
 pub mod surface_equilibrium;
 pub mod surfaces;
 
@@ -49,7 +50,7 @@ pub use model::{ContactMode, ContactSettings, Model, ShaftDof, Tolerances};
 pub use modes::{Mode, ModeSet, ModesSettings, RingSupport};
 pub use mounting::Mounting;
 pub use pose::Pose;
-pub use quasi_static::QuasiStatic;
+pub use quasi_static::QuasiStaticMotion;
 pub use solution::StaticSolution;
 pub use statics::StaticSolver;
 pub use stiffness::{DampingLaws, Linearisation};

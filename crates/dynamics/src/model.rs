@@ -16,6 +16,7 @@ use fem::Material;
 use input::Schedule;
 use ring::rigid::RigidInertia;
 use ring::{Backend, RingModel};
+use serde::Deserialize;
 use timer::SharedLaps;
 
 use crate::balls::BallResult;
@@ -26,6 +27,7 @@ use crate::interactions::seat_spring::Seat;
 use crate::interactions::traction::{Ellipse, Traction};
 use crate::kinematics::RingSpeeds;
 use crate::mounting::Mounting;
+use crate::shoulders::Shoulders;
 use crate::surfaces::Surfaces;
 
 /// Largest tilt of the shaft, rad: a little more than 3 deg. Contacts take it exactly; the inertia of tilts is off by
@@ -51,14 +53,34 @@ pub struct ShaftInertia {
     pub polar: f64,
 }
 
-/// How balls meet raceways.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// Inertia of a ball.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BallInertia {
+    /// Mass, kg.
+    pub mass: f64,
+    /// Moment of inertia about any axis, kg m^2.
+    pub moment: f64,
+}
+
+impl BallInertia {
+    /// That of a solid sphere.
+    pub fn of_sphere(mass: f64, diameter: f64) -> BallInertia {
+        BallInertia {
+            mass,
+            moment: 0.1 * mass * diameter.powi(2),
+        }
+    }
+}
+
+/// How the raceways' shape, the forces on the rings and the local compliance are represented.
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq)]
+#[serde(rename_all = "snake_case")]
 pub enum ContactMode {
-    /// Exact torus, force spread over a patch, local compliance matched.
+    /// Exact torus, force spread over a Hertz patch, local compliance matched: accurate on any mesh.
     Patch,
-    /// Mesh facets found by bounding boxes: the paper's way; local compliance counted twice.
+    /// Facets of the mesh and their nodes, found by bounding boxes: the paper's way; counts the local compliance twice.
     Facet,
-    /// Exact torus, rigid rings: the Jones-Harris limit.
+    /// Exact torus, rings do not deform: the Jones-Harris limit.
     Rigid,
 }
 
@@ -99,6 +121,8 @@ pub struct Model {
     pub sphere: SphereCompliance,
     /// Real surfaces; the default costs nothing.
     pub surfaces: Surfaces,
+    /// What the scene tells of shoulders, for warnings.
+    pub shoulders: Shoulders,
     /// Flexible rings, inner first; None is a rigid ring and costs nothing.
     pub rings: [Option<Arc<RingModel>>; 2],
     /// Forces on the other seats of the body of each ring at rest, inner first, N, over the functions of all its seats;
@@ -302,10 +326,9 @@ impl Model {
         FilmContact::of_raceway(&self.geometry, side, &self.hertz[side.index()], bodies)
     }
 
-    /// Mass, kg, and moment of inertia, kg m^2, of a ball.
-    pub fn ball_inertia(&self) -> [f64; 2] {
-        let mass = self.ball_mass();
-        [mass, 0.1 * mass * self.geometry.ball_diameter.powi(2)]
+    /// Inertia of a ball.
+    pub fn ball_inertia(&self) -> BallInertia {
+        BallInertia::of_sphere(self.ball_mass(), self.geometry.ball_diameter)
     }
 
     /// Mass of one ball, kg.

@@ -15,7 +15,7 @@ use crate::solution::StaticSolution;
 use crate::statics::StaticSolver;
 
 /// A model ready to turn without inertia.
-pub struct QuasiStatic<'a> {
+pub struct QuasiStaticMotion<'a> {
     model: &'a Model,
     rolling: Rolling,
     /// Time from one instant to the next, s.
@@ -24,10 +24,10 @@ pub struct QuasiStatic<'a> {
     pub solver: StaticSolver,
 }
 
-impl<'a> QuasiStatic<'a> {
+impl<'a> QuasiStaticMotion<'a> {
     /// Factors both rings; instants are `dt` seconds apart.
-    pub fn new(model: &'a Model, rolling: Rolling, dt: f64) -> Result<QuasiStatic<'a>, DynamicsError> {
-        Ok(QuasiStatic {
+    pub fn new(model: &'a Model, rolling: Rolling, dt: f64) -> Result<QuasiStaticMotion<'a>, DynamicsError> {
+        Ok(QuasiStaticMotion {
             model,
             rolling,
             dt,

@@ -10,7 +10,7 @@ use crate::effects::Loads;
 use crate::effects::steady_balls::SteadyBalls;
 use crate::equilibrium::centre_unloaded;
 use crate::error::DynamicsError;
-use crate::footprint::{Footprint, loaded};
+use crate::footprint::{Footprint, loaded, sizes};
 use crate::interactions::raceway_contact::{Site, SiteState, on_rings};
 use crate::loading::LoadCase;
 use crate::model::Model;
@@ -303,6 +303,7 @@ fn warnings(
     balls: &[BallResult],
 ) -> Vec<String> {
     let mut warnings = edge_warnings(model, footprints, forces, balls);
+    warnings.extend(model.shoulders.warning(&loaded(sizes(forces)), balls));
     let pressures = balls
         .iter()
         .flat_map(|b| [b.inner.peak_pressure_pa, b.outer.peak_pressure_pa]);
@@ -347,13 +348,17 @@ fn edge_warnings(
     forces: &[[f64; 2]],
     balls: &[BallResult],
 ) -> Vec<String> {
-    let (mut warnings, loaded) = (Vec::new(), loaded(forces));
+    let (mut warnings, loaded) = (Vec::new(), loaded(sizes(forces)));
     for side in Side::BOTH {
         let is_beyond = |ball: &usize| match model.surfaces.edges(side) {
             Some(_) => balls[*ball].contact(side).ellipse == Some(EllipseKind::Edge),
-            None => footprints[side.index()]
-                .get(*ball)
-                .is_some_and(|foot| foot.truncated),
+            None => {
+                let foot = footprints[side.index()].get(*ball);
+                let contact = balls[*ball].contact(side);
+                let reach = contact.semi_axes_m[0] / model.geometry.groove_radius(side);
+                foot.is_some_and(|foot| foot.truncated)
+                    || model.shoulders.is_beyond(side, contact.contact_angle_rad, reach)
+            }
         };
         let truncated: Vec<String> = (0..balls.len())
             .filter(|ball| loaded[2 * ball + side.index()] && is_beyond(ball))

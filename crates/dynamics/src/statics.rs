@@ -93,10 +93,7 @@ impl StaticSolver {
             let ring = model.ring(side);
             ring.map(|ring| StaticRing::new(model, side, ring)).transpose()
         };
-        let (inner, outer) = model
-            .backend
-            .try_both(|| build(Side::Inner), || build(Side::Outer))?;
-        let rings = [inner, outer];
+        let rings = model.backend.try_on_sides(build)?;
         let mut timing = Laps::default();
         for ring in rings.iter().flatten() {
             timing.merge(&ring.solver.laps);
@@ -160,6 +157,16 @@ impl StaticSolver {
         pose: &Pose,
         start: Option<&StaticSolution>,
     ) -> Result<StaticSolution, DynamicsError> {
+        self.solve_from(model, pose, start.map(|solution| &solution.displacements))
+    }
+
+    /// The same from the displacements of an earlier solution, of which nothing else is needed.
+    pub fn solve_from(
+        &mut self,
+        model: &Model,
+        pose: &Pose,
+        start: Option<&Displacements>,
+    ) -> Result<StaticSolution, DynamicsError> {
         let u = self.start(model, pose.now.time, start);
         let mut case = LoadCase::new(model, *pose, &self.costs, &u)?;
         let mut clock = Stopwatch::start();
@@ -180,10 +187,10 @@ impl StaticSolver {
     }
 
     /// Displacements to start from.
-    fn start(&self, model: &Model, time: f64, start: Option<&StaticSolution>) -> Displacements {
+    fn start(&self, model: &Model, time: f64, start: Option<&Displacements>) -> Displacements {
         let flexible = [self.rings[0].is_some(), self.rings[1].is_some()];
         let mut u = match start {
-            Some(solution) => solution.displacements.clone(),
+            Some(earlier) => earlier.clone(),
             None => Displacements::zero(model.geometry.n_balls, flexible),
         };
         for (i, q) in u.shaft.iter_mut().enumerate() {
@@ -281,8 +288,8 @@ impl StaticSolver {
             let columns = ring.solver.compliance(&weights);
             compliance::inverse(side, n, n / 2, &columns).map(Some)
         };
-        let (inner, outer) = backend.try_both(|| renewed(Side::Inner), || renewed(Side::Outer))?;
-        for (columns, new) in self.columns.iter_mut().zip([inner, outer]) {
+        let renewed = backend.try_on_sides(renewed)?;
+        for (columns, new) in self.columns.iter_mut().zip(renewed) {
             if new.is_some() {
                 *columns = new;
             }
@@ -311,10 +318,9 @@ impl StaticSolver {
             let seat = model.seat_motion(side);
             Some(ring.solver.solve_on(load, 1, seat.as_deref()))
         };
-        let both = model.backend.both(|| field(Side::Inner), || field(Side::Outer));
-        let (inner, outer) = both;
+        let fields = model.backend.on_sides(field);
         self.timing.add(SOLVE, clock.lap());
-        [inner, outer]
+        fields
     }
 
     /// How the rings answer at their contacts: the motions measured under these forces, and the columns.

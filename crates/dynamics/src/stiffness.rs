@@ -44,7 +44,7 @@ use crate::loading::LoadCase;
 use crate::model::{ContactMode, Model};
 use crate::solution::StaticSolution;
 use crate::statics::StaticSolver;
-use crate::system::{Body, ElasticPorts, LinkForces, System};
+use crate::system::{BodyId, ElasticPorts, LinkForces, System};
 
 /// Step of a contact angle in a difference quotient of loads, rad: their relative error is its square.
 const ANGLE_STEP: f64 = 1e-5;
@@ -257,7 +257,7 @@ fn ports_of(parts: &BearingParts) -> [Option<RingPorts>; 2] {
     let mut number = 0;
     [0, 1].map(|side| {
         let ports = parts.rings[side].as_ref()?;
-        let unknowns = system.unknowns(Body::Elastic(number));
+        let unknowns = system.unknowns(BodyId::Elastic(number));
         number += 1;
         Some(RingPorts {
             unknowns,
@@ -377,7 +377,7 @@ fn damping_of(parts: &BearingParts, system: &System, x: &[f64], laws: DampingLaw
         system.add_link_tangents(x, &contact_damping(parts, system, x, law), &mut damping);
     }
     for (number, ports) in parts.rings.iter().flatten().enumerate() {
-        let own = system.unknowns(Body::Elastic(number));
+        let own = system.unknowns(BodyId::Elastic(number));
         for (i, row) in own.clone().zip(ports.stiffness.chunks_exact(own.len())) {
             for (j, k) in own.clone().zip(row) {
                 damping[n * i + j] += stiffness_factor * k;

@@ -2,7 +2,7 @@
 
 mod support;
 
-use dynamics::effects::{BallCentrifugal, GyroscopicMoment, Now};
+use dynamics::effects::{BallCentrifugal, GyroscopicMoment, MomentShares, Now};
 use dynamics::kinematics::{BallSpeeds, Speed};
 use dynamics::motion::{Motion, MotionSettings, MotionState, StepCache};
 use dynamics::{ContactMode, Hold, Model, Pose, ShaftDof, StaticSolver};
@@ -29,7 +29,10 @@ fn spinning(mut model: Model, shares: [f64; 2]) -> Model {
     model.effects.push(Box::new(GyroscopicMoment {
         speeds: speed.into(),
         slip,
-        shares,
+        shares: MomentShares {
+            inner: shares[0],
+            outer: shares[1],
+        },
         ball_speeds: BallSpeeds::FreeAngle,
     }));
     model.shaft_mass = 0.5;

@@ -3,7 +3,7 @@
 mod support;
 
 use contact::Side;
-use dynamics::effects::{BallCentrifugal, GyroscopicMoment, Now};
+use dynamics::effects::{BallCentrifugal, GyroscopicMoment, MomentShares, Now};
 use dynamics::kinematics::{BallSpeeds, Kinematics, Speed};
 use dynamics::{ContactMode, Hold, Model, Pose, StaticSolution, StaticSolver};
 use support::finite::{InnerContact, cross};
@@ -33,7 +33,10 @@ fn spinning_by(ball_speeds: BallSpeeds, mut model: Model, omega: f64, shares: Op
         model.effects.push(Box::new(GyroscopicMoment {
             speeds: speed.into(),
             slip,
-            shares,
+            shares: MomentShares {
+                inner: shares[0],
+                outer: shares[1],
+            },
             ball_speeds,
         }));
     }
@@ -254,7 +257,10 @@ fn friction_of_the_balls_is_balanced_by_the_shaft() {
         let effect = GyroscopicMoment {
             speeds: Speed::constant(FAST).into(),
             slip: [0.0; 2],
-            shares,
+            shares: MomentShares {
+                inner: shares[0],
+                outer: shares[1],
+            },
             ball_speeds: BallSpeeds::FreeAngle,
         };
         let angles: Vec<f64> = (solution.balls.iter())

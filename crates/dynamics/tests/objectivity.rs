@@ -14,7 +14,7 @@ use dynamics::effects::unbalance::Unbalance;
 use dynamics::effects::{AxialForce, Effect, FrameRotation, Gravity, Moment, RadialForce};
 use dynamics::kinematics::Speed;
 use dynamics::model::ShaftInertia;
-use dynamics::motion::{Motion, MotionSettings, MotionState, StepCache};
+use dynamics::motion::{Motion, MotionSettings, MotionState, PatchPlace, StepCache};
 use dynamics::{ContactMode, Hold, Model, ShaftDof, StaticSolution};
 use input::Schedule;
 use support::rings::Level;
@@ -224,10 +224,11 @@ fn run(turn: Turn, model: &Model, start: &Displacements, push: [f64; 5]) -> Vec<
     state.angles.fill(touching);
     state.approaches.fill(0.0);
     state.forces.fill([0.0; 2]);
-    state
-        .places
-        .iter_mut()
-        .for_each(|places| places.fill([touching, 0.0]));
+    let unloaded = PatchPlace {
+        angle: touching,
+        force: 0.0,
+    };
+    state.places.iter_mut().for_each(|places| places.fill(unloaded));
     let mut states = vec![motion.with_energies(state)];
     let mut cache = StepCache::default();
     for _ in 0..150 {

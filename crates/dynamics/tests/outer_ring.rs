@@ -5,10 +5,10 @@ mod support;
 use std::f64::consts::PI;
 
 use contact::Side;
-use dynamics::effects::{BallCentrifugal, FrameRotation, Gravity, GyroscopicMoment};
+use dynamics::effects::{BallCentrifugal, FrameRotation, Gravity, GyroscopicMoment, MomentShares};
 use dynamics::kinematics::{BallSpeeds, Kinematics, RingSpeeds, Rolling, Speed};
 use dynamics::motion::{Motion, MotionSettings, MotionState, StepCache};
-use dynamics::{ContactMode, Hold, Model, Pose, QuasiStatic, ShaftDof, StaticSolution, StaticSolver};
+use dynamics::{ContactMode, Hold, Model, Pose, QuasiStaticMotion, ShaftDof, StaticSolution, StaticSolver};
 use input::Schedule;
 use support::rings::Level;
 use support::{Case, equilibrium, relative};
@@ -101,7 +101,7 @@ fn the_gyroscopic_moment_needs_spin_and_cage() {
         let effect = GyroscopicMoment {
             speeds: speeds(inner, outer),
             slip: [0.0; 2],
-            shares: [0.0, 2.0],
+            shares: MomentShares::OUTER_CONTROL,
             ball_speeds: BallSpeeds::FreeAngle,
         };
         effect.moment(&model, &Default::default(), 0)
@@ -246,7 +246,7 @@ fn equilibria_in_time_turn_the_outer_ring() {
     let rolling = Rolling::new(&model.geometry, turning, [0.0; 2]);
     let mirrored = Rolling::new(&model.geometry, speeds(-SPEED, 0.0), [0.0; 2]);
     let solve = |rolling: Rolling| {
-        let mut quasi = QuasiStatic::new(&model, rolling, 7e-5).unwrap();
+        let mut quasi = QuasiStaticMotion::new(&model, rolling, 7e-5).unwrap();
         quasi.step(3, None).unwrap()
     };
     let (outer, inner) = (solve(rolling), solve(mirrored));

@@ -8,7 +8,7 @@ use contact::Side;
 use dynamics::effects::{AxialForce, BallCentrifugal, Gravity, Now, RadialForce};
 use dynamics::kinematics::{BallSpeeds, Rolling, Speed};
 use dynamics::motion::{Motion, MotionSettings, StepCache};
-use dynamics::{ContactMode, Hold, Model, Pose, QuasiStatic, StaticSolution, StaticSolver};
+use dynamics::{ContactMode, Hold, Model, Pose, QuasiStaticMotion, StaticSolution, StaticSolver};
 use input::Schedule;
 
 use support::rings::Level;
@@ -31,7 +31,7 @@ fn combined() -> Case {
 
 /// Equilibria from the start on, `n` steps of `dt`.
 fn run(model: &Model, dt: f64, n: u64) -> Vec<StaticSolution> {
-    let mut quasi = QuasiStatic::new(model, rolling(model), dt).unwrap();
+    let mut quasi = QuasiStaticMotion::new(model, rolling(model), dt).unwrap();
     let mut solutions: Vec<StaticSolution> = Vec::new();
     for step in 0..=n {
         let solution = quasi.step(step, solutions.last()).unwrap();
@@ -177,7 +177,7 @@ fn slow_motion_follows_the_quasi_static_run() {
         ball_speeds: BallSpeeds::FreeAngle,
     }));
     let dt = 2e-5;
-    let mut quasi = QuasiStatic::new(&model, rolling(&model), 0.5 * dt).unwrap();
+    let mut quasi = QuasiStaticMotion::new(&model, rolling(&model), 0.5 * dt).unwrap();
     let start = quasi.step(0, None).unwrap();
     let settings = MotionSettings::conserving(dt, Speed::constant(SPEED));
     let motion = Motion::new(&model, settings).unwrap();

@@ -10,7 +10,7 @@ use dynamics::balls::BallResult;
 use dynamics::interactions::contact_damping::ContactDamping;
 use dynamics::kinematics::{Rolling, Speed};
 use dynamics::motion::{Motion, MotionSettings, MotionState, StepCache};
-use dynamics::{ContactMode, Hold, Model, QuasiStatic};
+use dynamics::{ContactMode, Hold, Model, QuasiStaticMotion};
 use support::Case;
 use support::rings::Level;
 
@@ -60,7 +60,7 @@ impl Run {
 
     fn roll(&mut self, n: usize) {
         let nodes = Side::BOTH.map(|side| raceway_node(&self.model, side));
-        let start = QuasiStatic::new(&self.model, self.rolling.clone(), self.dt)
+        let start = QuasiStaticMotion::new(&self.model, self.rolling.clone(), self.dt)
             .and_then(|mut quasi| quasi.step(0, None))
             .unwrap();
         let settings = MotionSettings {
@@ -145,7 +145,7 @@ static LOADED: LazyLock<Run> = LazyLock::new(|| Run::new(2000.0, 1000.0, 4));
 #[test]
 fn rolling_settles_on_the_quasi_static_forces() {
     let run = &*LOADED;
-    let mut quasi = QuasiStatic::new(&run.model, run.rolling.clone(), 0.5 * run.dt).unwrap();
+    let mut quasi = QuasiStaticMotion::new(&run.model, run.rolling.clone(), 0.5 * run.dt).unwrap();
     let (mut earlier, mut worst) = (None, 0.0f64);
     for (i, seen) in run.seen.iter().enumerate().skip(START * PITCH_STEPS).step_by(37) {
         let rest = quasi.step(2 * i as u64 + 1, earlier.as_ref()).unwrap();
@@ -309,7 +309,7 @@ fn rolling_without_friction_needs_no_drive() {
 /// Shaft of equilibria at `n` places of one pitch.
 fn still_shaft(run: &Run, n: usize) -> Vec<[f64; 5]> {
     let dt = run.dt * PITCH_STEPS as f64 / n as f64;
-    let mut quasi = QuasiStatic::new(&run.model, run.rolling.clone(), dt).unwrap();
+    let mut quasi = QuasiStaticMotion::new(&run.model, run.rolling.clone(), dt).unwrap();
     let (mut earlier, mut places) = (None, Vec::new());
     for step in 0..n as u64 {
         let rest = quasi.step(step, earlier.as_ref()).unwrap();

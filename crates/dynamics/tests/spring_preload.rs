@@ -4,7 +4,9 @@ mod support;
 
 use std::f64::consts::TAU;
 
-use dynamics::effects::{AxialForce, BallCentrifugal, Gravity, GyroscopicMoment, RadialForce, SpringPreload};
+use dynamics::effects::{
+    AxialForce, BallCentrifugal, Gravity, GyroscopicMoment, MomentShares, RadialForce, SpringPreload,
+};
 use dynamics::interactions::seat_spring::Seat;
 use dynamics::kinematics::Speed;
 use dynamics::modes::bearing_modes;
@@ -232,7 +234,7 @@ fn forces_across_the_contacts_are_in_the_balance() {
         model.effects.push(Box::new(GyroscopicMoment {
             speeds: speed.clone().into(),
             slip: Default::default(),
-            shares: [0.0, 2.0],
+            shares: MomentShares::OUTER_CONTROL,
             ball_speeds: Default::default(),
         }));
         let found = equilibrium(&model);

@@ -2,7 +2,7 @@
 
 mod support;
 
-use dynamics::effects::{BallCentrifugal, GyroscopicMoment, RingDamping, SpringPreload};
+use dynamics::effects::{BallCentrifugal, GyroscopicMoment, MomentShares, RingDamping, SpringPreload};
 use dynamics::interactions::contact_damping::ContactDamping;
 use dynamics::kinematics::{BallSpeeds, RingSpeeds, Speed};
 use dynamics::stiffness::{N_SHAFT, ShaftMatrix, softest};
@@ -157,7 +157,10 @@ fn loads_that_follow_the_contact_angles_are_in_it() {
             model.effects.push(Box::new(GyroscopicMoment {
                 speeds,
                 slip: [0.0; 2],
-                shares: [0.5, 1.5],
+                shares: MomentShares {
+                    inner: 0.5,
+                    outer: 1.5,
+                },
                 ball_speeds,
             }));
             model.tolerances.force = 1e-13;

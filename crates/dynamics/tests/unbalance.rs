@@ -7,7 +7,7 @@ use dynamics::effects::unbalance::Unbalance;
 use dynamics::effects::{self, Now, RadialForce};
 use dynamics::kinematics::{Rolling, Speed};
 use dynamics::motion::{Motion, MotionSettings, MotionState, StepCache};
-use dynamics::{ContactMode, Hold, Model, QuasiStatic, ShaftDof};
+use dynamics::{ContactMode, Hold, Model, QuasiStaticMotion, ShaftDof};
 use input::Schedule;
 use support::rings::Level;
 use support::{Case, equilibrium, relative};
@@ -194,7 +194,7 @@ fn equilibria_in_time_are_those_under_its_force() {
     let plain = Case::axial(500.0).rigid();
     let model = unbalanced(Case::axial(500.0).rigid(), &speed, 0.0);
     let rolling = |model: &Model| Rolling::new(&model.geometry, speed.clone(), [0.0; 2]);
-    let mut turning = QuasiStatic::new(&model, rolling(&model), 1e-3).unwrap();
+    let mut turning = QuasiStaticMotion::new(&model, rolling(&model), 1e-3).unwrap();
     for step in 0..4 {
         let found = turning.step(step, None).unwrap();
         let mut pushed = Case::axial(500.0).rigid();
@@ -203,7 +203,7 @@ fn equilibria_in_time_are_those_under_its_force() {
             direction: ANGLE + 0.6 * step as f64,
             schedule: Schedule::Constant,
         }));
-        let mut fixed = QuasiStatic::new(&pushed, rolling(&plain), 1e-3).unwrap();
+        let mut fixed = QuasiStaticMotion::new(&pushed, rolling(&plain), 1e-3).unwrap();
         let expected = fixed.step(step, None).unwrap();
         for (a, b) in found.balls.iter().zip(&expected.balls) {
             assert!(relative(a.inner.force_n, b.inner.force_n) < 1e-11, "step {step}");

@@ -6,7 +6,7 @@ use contact::{BearingGeometry, Side};
 use dynamics::kinematics::{RingSpeeds, Rolling, Speed};
 use dynamics::motion::{Motion, MotionSettings, MotionState, StepCache};
 use dynamics::mounting::{Conditions, Mounting, RadialProfile, RingTemperature, TemperatureSchedule};
-use dynamics::{ContactMode, Hold, Model, QuasiStatic};
+use dynamics::{ContactMode, Hold, Model, QuasiStaticMotion};
 use support::mounting::{ALPHA, RINGS, at, fit, fitted, flexible, mount, mounted_model, unmounted};
 use support::rings::Level;
 use support::{Case, equilibrium, relative};
@@ -69,7 +69,7 @@ fn an_instant_of_a_schedule_is_the_bearing_at_its_temperatures() {
     for (model, tolerance) in models {
         let moving = mounted_model(model(), &warming(10e-3));
         let rolling = Rolling::new(&moving.geometry, Speed::constant(0.0), [0.0; 2]);
-        let mut quasi = QuasiStatic::new(&moving, rolling, 5e-3).unwrap();
+        let mut quasi = QuasiStaticMotion::new(&moving, rolling, 5e-3).unwrap();
         // Before the end, at it, and after it.
         for (step, celsius) in [(1, 30.0), (2, 40.0), (3, 40.0)] {
             let found = quasi.step(step, None).unwrap();

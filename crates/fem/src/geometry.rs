@@ -5,10 +5,10 @@ use mesh::Mesh;
 use crate::element::MAX_NODES;
 use crate::error::FemError;
 use crate::quadrature;
-use crate::table::Table;
+use crate::table::ShapeTable;
 
 /// Coordinates of one element's nodes, m, `[MAX_NODES][3]`, zero beyond its nodes.
-pub(crate) type Coordinates = [[f64; 3]; MAX_NODES];
+pub(crate) type ElementCoordinates = [[f64; 3]; MAX_NODES];
 
 /// Inverse and determinant of a Jacobian.
 pub(crate) struct InverseMap {
@@ -47,7 +47,7 @@ pub(crate) fn check_connectivity(mesh: &Mesh) -> Result<(), FemError> {
 /// Refuses a mesh with a broken connectivity or with an element that is inverted at a point of the mass rule.
 pub fn check_elements(mesh: &Mesh) -> Result<(), FemError> {
     check_connectivity(mesh)?;
-    let table = Table::new(mesh.kind, &quadrature::mass_rule(mesh.kind));
+    let table = ShapeTable::new(mesh.kind, &quadrature::mass_rule(mesh.kind));
     let measure = |e: usize, _: &mut [f64]| {
         let x = coordinates(mesh, e);
         (0..table.n_points()).try_for_each(|q| checked_map(&table, q, &x, e).map(|_| ()))
@@ -56,7 +56,7 @@ pub fn check_elements(mesh: &Mesh) -> Result<(), FemError> {
 }
 
 /// Coordinates of the nodes of element `e`.
-pub(crate) fn coordinates(mesh: &Mesh, e: usize) -> Coordinates {
+pub(crate) fn coordinates(mesh: &Mesh, e: usize) -> ElementCoordinates {
     let mut x = [[0.0; 3]; MAX_NODES];
     for (a, &node) in mesh.element(e).iter().enumerate() {
         x[a] = mesh.nodes[node];
@@ -66,7 +66,7 @@ pub(crate) fn coordinates(mesh: &Mesh, e: usize) -> Coordinates {
 
 /// `J_ij = sum_a dN_a/dxi_i x_aj` from reference gradients by component.
 #[inline]
-pub(crate) fn jacobian(n_nodes: usize, dn: &[[f64; MAX_NODES]; 3], x: &Coordinates) -> [[f64; 3]; 3] {
+pub(crate) fn jacobian(n_nodes: usize, dn: &[[f64; MAX_NODES]; 3], x: &ElementCoordinates) -> [[f64; 3]; 3] {
     let mut j = [[0.0; 3]; 3];
     for a in 0..n_nodes {
         for i in 0..3 {
@@ -98,9 +98,9 @@ pub(crate) fn invert(j: &[[f64; 3]; 3]) -> InverseMap {
 /// The inverse map of element `e` at point `q` of a table, refused unless its determinant is positive.
 #[inline]
 pub(crate) fn checked_map(
-    table: &Table,
+    table: &ShapeTable,
     q: usize,
-    x: &Coordinates,
+    x: &ElementCoordinates,
     e: usize,
 ) -> Result<InverseMap, FemError> {
     let map = invert(&jacobian(table.kind.n_nodes(), &table.gradients[q], x));
@@ -117,7 +117,7 @@ pub(crate) fn checked_map(
 }
 
 /// Physical position of point `q` of a table, m.
-pub(crate) fn position(table: &Table, q: usize, x: &Coordinates) -> [f64; 3] {
+pub(crate) fn position(table: &ShapeTable, q: usize, x: &ElementCoordinates) -> [f64; 3] {
     let mut point = [0.0; 3];
     for a in 0..table.kind.n_nodes() {
         for i in 0..3 {

@@ -41,7 +41,7 @@ pub use loads::{body_load, centrifugal_load};
 pub use mass::{assemble_azimuthal_mass, assemble_mass, assemble_mass_into, assemble_node_mass};
 pub use material::Material;
 pub use pattern::Pattern;
-pub use rigid::{Inertia, inertia, rigid_modes, volume};
+pub use rigid::{MassProperties, inertia, rigid_modes, volume};
 pub use sector::{SectorCoupling, SectorMatrices, assemble_sector, azimuth_directions};
 pub use stiffness::{assemble_stiffness, assemble_stiffness_into, stiffness_product};
 pub use stress::{SectorStress, StressRecovery, StressWorkspace, principal, von_mises};

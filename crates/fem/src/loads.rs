@@ -8,7 +8,7 @@ use crate::chunks::for_each_element;
 use crate::error::FemError;
 use crate::geometry::{check_connectivity, checked_map, coordinates, position};
 use crate::quadrature;
-use crate::table::Table;
+use crate::table::ShapeTable;
 
 /// Nodal forces of a force per volume, N, `[3 n_nodes]`; the force, N/m^3, is a function of the position, m.
 pub fn body_load<F>(mesh: &Mesh, force: F) -> Result<Vec<f64>, FemError>
@@ -16,7 +16,7 @@ where
     F: Fn([f64; 3]) -> [f64; 3] + Sync,
 {
     check_connectivity(mesh)?;
-    let table = Table::new(mesh.kind, &quadrature::mass_rule(mesh.kind));
+    let table = ShapeTable::new(mesh.kind, &quadrature::mass_rule(mesh.kind));
     let n = mesh.kind.n_nodes();
     let compute = |e: usize, values: &mut [f64]| {
         let x = coordinates(mesh, e);

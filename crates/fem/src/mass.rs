@@ -11,7 +11,7 @@ use crate::geometry::{checked_map, coordinates, physical, position};
 use crate::material::Material;
 use crate::pattern::Pattern;
 use crate::quadrature;
-use crate::table::Table;
+use crate::table::ShapeTable;
 
 /// The mass matrix of all degrees of freedom, kg, `[3 n_nodes][3 n_nodes]`, CSR, exactly symmetric.
 ///
@@ -97,7 +97,7 @@ fn node_mass(pattern: &Pattern, mesh: &Mesh, material: &Material) -> Result<Vec<
 
 /// What the masses of all elements of a kind and material share.
 pub(crate) struct NodeMass {
-    table: Table,
+    table: ShapeTable,
     density: f64,
 }
 
@@ -105,7 +105,7 @@ impl NodeMass {
     /// Tabulates the functions of a kind for a valid material.
     pub fn new(kind: ElementKind, material: &Material) -> NodeMass {
         NodeMass {
-            table: Table::new(kind, &quadrature::mass_rule(kind)),
+            table: ShapeTable::new(kind, &quadrature::mass_rule(kind)),
             density: material.density,
         }
     }

@@ -11,7 +11,7 @@ use crate::geometry::{check_connectivity, checked_map, coordinates, position};
 use crate::material::Material;
 use crate::quadrature;
 use crate::stress::kernel::strains_at;
-use crate::table::Table;
+use crate::table::ShapeTable;
 
 /// `sqrt(integral of |u_h - u|^2 dV)`, m^(5/2), from displacements, m, `[3 n_nodes]`, and the exact displacement, m.
 ///
@@ -20,7 +20,7 @@ pub fn l2_error<F>(mesh: &Mesh, u: &[f64], exact: F) -> Result<f64, FemError>
 where
     F: Fn([f64; 3]) -> [f64; 3] + Sync,
 {
-    let table = Table::new(mesh.kind, &quadrature::mass_rule(mesh.kind));
+    let table = ShapeTable::new(mesh.kind, &quadrature::mass_rule(mesh.kind));
     integrate(mesh, &table, |e| {
         let x = coordinates(mesh, e);
         let squared = |q: usize| {
@@ -46,8 +46,8 @@ where
 {
     material.validate()?;
     let lame = [material.lame_lambda(), material.shear_modulus()];
-    let stiffness = Table::new(mesh.kind, &quadrature::stiffness_rule(mesh.kind));
-    let table = Table::new(mesh.kind, &quadrature::mass_rule(mesh.kind));
+    let stiffness = ShapeTable::new(mesh.kind, &quadrature::stiffness_rule(mesh.kind));
+    let table = ShapeTable::new(mesh.kind, &quadrature::mass_rule(mesh.kind));
     integrate(mesh, &table, |e| {
         let x = coordinates(mesh, e);
         let strains = strains_at(mesh, e, u, lame, &stiffness, &table);
@@ -68,7 +68,7 @@ where
 }
 
 /// Square root of the integral of a quantity given at every point of every element.
-fn integrate<F>(mesh: &Mesh, table: &Table, squared: F) -> Result<f64, FemError>
+fn integrate<F>(mesh: &Mesh, table: &ShapeTable, squared: F) -> Result<f64, FemError>
 where
     F: Fn(usize) -> Vec<f64> + Sync,
 {

@@ -10,11 +10,11 @@ use crate::error::FemError;
 use crate::geometry::{check_connectivity, checked_map, coordinates, position};
 use crate::material::Material;
 use crate::quadrature;
-use crate::table::Table;
+use crate::table::ShapeTable;
 
 /// Mass properties of a body.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Inertia {
+pub struct MassProperties {
     /// Mass, kg.
     pub mass: f64,
     /// Centre of mass, m, `[3]`.
@@ -29,7 +29,7 @@ pub fn volume(mesh: &Mesh) -> Result<f64, FemError> {
 }
 
 /// Mass, centre and inertia tensor of the mesh.
-pub fn inertia(mesh: &Mesh, material: &Material) -> Result<Inertia, FemError> {
+pub fn inertia(mesh: &Mesh, material: &Material) -> Result<MassProperties, FemError> {
     material.validate()?;
     let [volume, x, y, z, xx, yy, zz, xy, yz, xz] = moments(mesh)?;
     let mass = material.density * volume;
@@ -46,7 +46,7 @@ pub fn inertia(mesh: &Mesh, material: &Material) -> Result<Inertia, FemError> {
         }
     }
     let centre = [origin[0] + c[0], origin[1] + c[1], origin[2] + c[2]];
-    Ok(Inertia { mass, centre, tensor })
+    Ok(MassProperties { mass, centre, tensor })
 }
 
 /// The six rigid motions as displacements, `[6][3 n_nodes]`: unit translations along x, y, z (m), then unit small
@@ -72,7 +72,7 @@ pub fn rigid_modes(mesh: &Mesh, about: [f64; 3]) -> [Vec<f64>; 6] {
 fn moments(mesh: &Mesh) -> Result<[f64; 10], FemError> {
     check_connectivity(mesh)?;
     let origin = mesh.nodes[mesh.connectivity[0]];
-    let table = Table::new(mesh.kind, &quadrature::mass_rule(mesh.kind));
+    let table = ShapeTable::new(mesh.kind, &quadrature::mass_rule(mesh.kind));
     let compute = |e: usize, values: &mut [f64]| {
         let nodes = coordinates(mesh, e);
         values.fill(0.0);

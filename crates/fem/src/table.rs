@@ -6,7 +6,7 @@ use crate::element::{self, MAX_NODES};
 use crate::quadrature::VolumeRule;
 
 /// Shape functions at integration points; gradients by component, so that loops over nodes are contiguous.
-pub(crate) struct Table {
+pub(crate) struct ShapeTable {
     /// Element kind.
     pub kind: ElementKind,
     /// Reference points, `[n_points][3]`.
@@ -19,10 +19,10 @@ pub(crate) struct Table {
     pub gradients: Vec<[[f64; MAX_NODES]; 3]>,
 }
 
-impl Table {
+impl ShapeTable {
     /// Tabulates the functions of a kind at the points of a rule.
-    pub fn new(kind: ElementKind, rule: &VolumeRule) -> Table {
-        Table {
+    pub fn new(kind: ElementKind, rule: &VolumeRule) -> ShapeTable {
+        ShapeTable {
             kind,
             points: rule.points.clone(),
             weights: rule.weights.clone(),

@@ -13,13 +13,13 @@ const ROW: f64 = 1.5 * TEXT;
 /// Names in their places.
 #[derive(Clone, Debug, Default)]
 pub struct Legend {
-    pub entries: Vec<Entry>,
+    pub entries: Vec<LegendEntry>,
     n_rows: usize,
 }
 
 /// A name and the series that it stands for.
 #[derive(Clone, Debug)]
-pub struct Entry {
+pub struct LegendEntry {
     /// Number of the series.
     pub series: usize,
     pub name: String,
@@ -92,7 +92,7 @@ fn in_rows(names: &[(usize, &str)], room: f64) -> Legend {
             x = 0.0;
         }
         let y = (legend.n_rows as f64 - 0.5) * ROW;
-        legend.entries.push(Entry { series, name, x, y });
+        legend.entries.push(LegendEntry { series, name, x, y });
         x += width + 2.0 * GAP;
     }
     legend

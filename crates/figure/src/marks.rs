@@ -4,7 +4,7 @@ use plotters::prelude::*;
 
 use crate::canvas::{Canvas, Drawn, UNITS, units, write};
 use crate::layout::Layout;
-use crate::legend::{Entry, SAMPLE, style_index};
+use crate::legend::{LegendEntry, SAMPLE, style_index};
 use crate::page::{LINE_WIDTH, Rect, TEXT};
 use crate::text::Weight;
 use crate::thin::thin;
@@ -139,7 +139,7 @@ pub fn draw_series(figure: &Figure, index: usize, pen: &Pen, canvas: &Canvas) ->
 }
 
 /// The sample of a series and its name in the legend.
-pub fn draw_sample(figure: &Figure, entry: &Entry, canvas: &Canvas) -> Drawn {
+pub fn draw_sample(figure: &Figure, entry: &LegendEntry, canvas: &Canvas) -> Drawn {
     let series = &figure.series[entry.series];
     if series.look == Look::Area {
         let corners = [

@@ -8,7 +8,7 @@ use std::str::FromStr;
 use serde::de::{Deserialize, Deserializer, Error, Visitor};
 
 use crate::problems::Problems;
-use crate::units::bare_number;
+use crate::units::{bare_number, with_unit_of};
 
 /// Heat that flows between two bodies per kelvin between them.
 #[derive(Clone, Debug)]
@@ -21,7 +21,7 @@ pub struct Conductance {
 /// What messages ask for.
 const EXPECTED: &str = "a thermal conductance such as \"5 W/K\"";
 /// Units and their size, W/K.
-const UNITS: [(&str, f64); 3] = [("mW/K", 1e-3), ("kW/K", 1e3), ("W/K", 1.0)];
+const UNITS: [(&str, f64); 3] = [("W/K", 1.0), ("mW/K", 1e-3), ("kW/K", 1e3)];
 
 impl Conductance {
     /// Value, W/K.
@@ -58,20 +58,12 @@ impl FromStr for Conductance {
 
     fn from_str(text: &str) -> Result<Self, String> {
         let typed = text.trim();
-        let wrong = |reason: &str| format!("{text:?} {reason}; expected {EXPECTED}");
-        let Some((number, size)) = UNITS.iter().find_map(|(unit, size)| {
-            let number = typed.strip_suffix(unit)?;
-            Some((number.trim_end(), size))
-        }) else {
-            return Err(wrong("does not end with \"W/K\""));
-        };
-        match number.parse::<f64>() {
-            Ok(value) if value.is_finite() => Ok(Conductance {
-                watt_per_kelvin: value * size,
-                typed: typed.to_string(),
-            }),
-            _ => Err(wrong("does not begin with a number")),
-        }
+        let (value, size) = with_unit_of(&UNITS, typed)
+            .map_err(|reason| format!("{text:?} {reason}; expected {EXPECTED}"))?;
+        Ok(Conductance {
+            watt_per_kelvin: value * size,
+            typed: typed.to_string(),
+        })
     }
 }
 
@@ -127,7 +119,8 @@ mod tests {
         for (text, said) in [
             (
                 "5",
-                "\"5\" does not end with \"W/K\"; expected a thermal conductance such as \"5 W/K\"",
+                "\"5\" has no unit, of which \"W/K\", \"mW/K\", \"kW/K\" are known; expected \
+                 a thermal conductance such as \"5 W/K\"",
             ),
             ("much W/K", "\"much W/K\" does not begin with a number"),
         ] {

@@ -8,7 +8,7 @@ use std::str::FromStr;
 use serde::de::{Deserialize, Deserializer, Error, Visitor};
 
 use crate::problems::Problems;
-use crate::units::bare_number;
+use crate::units::{bare_number, with_unit_of};
 
 /// A coefficient of linear thermal expansion.
 #[derive(Clone, Debug)]
@@ -20,6 +20,8 @@ pub struct Expansion {
 
 /// What messages ask for.
 const EXPECTED: &str = "a thermal expansion such as \"11.5e-6 /K\"";
+/// Units and their size, 1/K.
+const UNITS: [(&str, f64); 4] = [("/K", 1.0), ("1/K", 1.0), ("/degC", 1.0), ("1/degC", 1.0)];
 /// Larger than that of any solid a machine is made of, 1/K.
 const MOST: f64 = 1e-3;
 
@@ -58,20 +60,12 @@ impl FromStr for Expansion {
 
     fn from_str(text: &str) -> Result<Self, String> {
         let typed = text.trim();
-        let wrong = |reason: &str| format!("{text:?} {reason}; expected {EXPECTED}");
-        let Some(number) = ["1/K", "/K", "1/degC", "/degC"].iter().find_map(|unit| {
-            let number = typed.strip_suffix(unit)?;
-            Some(number.trim_end())
-        }) else {
-            return Err(wrong("does not end with \"/K\""));
-        };
-        match number.parse::<f64>() {
-            Ok(value) if value.is_finite() => Ok(Expansion {
-                per_kelvin: value,
-                typed: typed.to_string(),
-            }),
-            _ => Err(wrong("does not begin with a number")),
-        }
+        let (value, size) = with_unit_of(&UNITS, typed)
+            .map_err(|reason| format!("{text:?} {reason}; expected {EXPECTED}"))?;
+        Ok(Expansion {
+            per_kelvin: value * size,
+            typed: typed.to_string(),
+        })
     }
 }
 
@@ -122,10 +116,17 @@ mod tests {
         for (text, said) in [
             (
                 "11.5e-6",
-                "\"11.5e-6\" does not end with \"/K\"; expected a thermal expansion such as \"11.5e-6 /K\"",
+                "\"11.5e-6\" has no unit, of which \"/K\", \"1/K\", \"/degC\", \"1/degC\" are known; expected a \
+                 thermal expansion such as \"11.5e-6 /K\"",
+            ),
+            (
+                "23 um/m/K",
+                "\"23 um/m/K\" has the unknown unit \"um/m/K\", known are \"/K\", \"1/K\", \"/degC\", \"1/degC\"; \
+                 expected a thermal expansion such as \"11.5e-6 /K\"",
             ),
             ("warm /K", "\"warm /K\" does not begin with a number"),
             ("inf /K", "\"inf /K\" does not begin with a number"),
+            ("1e400 /K", "\"1e400 /K\" is not a finite number"),
         ] {
             let message = text.parse::<Expansion>().unwrap_err();
             assert!(message.starts_with(said), "{message}");

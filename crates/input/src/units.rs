@@ -213,3 +213,25 @@ fn require_dimension(text: &str, found: Dimension, kind: &Kind, expected: String
         expected,
     })
 }
+
+/// Number and size of the unit of a text, for quantities per kelvin, which have a few whole units of their own (symbol,
+/// size); else what is wrong with it, behind the text itself.
+pub(crate) fn with_unit_of(units: &[(&str, f64)], text: &str) -> Result<(f64, f64), String> {
+    let Some((number, rest)) = number::Decimal::split(text) else {
+        return Err("does not begin with a number".to_string());
+    };
+    let unit = rest.trim();
+    let Some((_, size)) = units.iter().find(|(symbol, _)| *symbol == unit) else {
+        let known = units.iter().map(|(symbol, _)| format!("{symbol:?}"));
+        let known = known.collect::<Vec<_>>().join(", ");
+        return Err(match unit {
+            "" => format!("has no unit, of which {known} are known"),
+            _ => format!("has the unknown unit {unit:?}, known are {known}"),
+        });
+    };
+    let value = number.times_power_of_ten(0);
+    match value.is_finite() {
+        true => Ok((value, *size)),
+        false => Err("is not a finite number".to_string()),
+    }
+}

@@ -31,7 +31,7 @@ use plot::{Named, Results};
 use results::failure::Failure;
 use results::folder::say_later;
 use results::whole::{self, holds, require_own_picture, write_picture};
-use scene::{MeshFiles, Motion, Scene};
+use scene::{MeshFiles, Scene, ShaftMotion};
 use serde::Serialize;
 
 use crate::assess::{Assessment, CatalogueLife, Rated, assess, catalogue_life};
@@ -129,6 +129,7 @@ pub fn of_run(scene: &Scene, dir: &Path) -> Option<serde_json::Value> {
 }
 
 fn life_of_run(dir: &Path, command: &LifeCommand) -> Result<(), Failure> {
+    plot::require_one_bearing(dir)?;
     let run = FinishedRun::read(dir, &command.overrides)?;
     say_later(dir);
     let out = Some(command.out.as_deref().unwrap_or(dir));
@@ -217,7 +218,7 @@ fn loads_of_scene(scene: &Scene, rated: &Rated) -> (Option<EquivalentLoads>, Str
     };
     let of_forces = "P is that of [effects.axial_force] and [effects.radial_force] alone, without schedules; other \
                      loads count in the life of a run";
-    let given = |motion: &Motion| matches!(motion, Motion::Prescribed(_));
+    let given = |motion: &ShaftMotion| matches!(motion, ShaftMotion::Prescribed(_));
     let shaft = &scene.shaft;
     if load == BearingLoad::default() {
         return (

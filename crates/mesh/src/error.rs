@@ -132,7 +132,7 @@ pub enum MeshError {
     },
     /// The group that says which elements are the body is missing.
     #[error(
-        "{path} has no physical {kind} \"{name}\" with elements; physical {kind}s are {groups}; name the ring's \
+        "{path} has no physical {kind} \"{name}\" with elements; physical {kind}s are {groups}; name the {name}'s \
          {kind} so in the .geo: Physical {kind}(\"{name}\") = {{...}};"
     )]
     NoBody {

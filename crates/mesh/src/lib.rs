@@ -33,7 +33,7 @@ pub use msh::write::{MshFormat, Overwrite, write_msh, write_msh_with_record};
 pub use msh::{read_body_msh, read_msh, read_msh_with_origin};
 pub use origin::Origin;
 pub use periodic::{
-    NearlyPeriodic, NotNearlyPeriodic, NotPeriodic, PERIODIC_TOLERANCE, Periodicity, Site,
+    NearlyPeriodic, NotNearlyPeriodic, NotPeriodic, PERIODIC_TOLERANCE, PeriodicSite, Periodicity,
     find_nearly_periodic, find_periodicity,
 };
 pub use positions::NodePositions;

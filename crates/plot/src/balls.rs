@@ -5,32 +5,32 @@ use figure::{Axis, Figure, Series};
 use super::choice::Choice;
 use super::named::Named;
 use super::quantity::{
-    DEGREE, GIGAPASCAL, MEGAWATT_PER_SQUARE_METRE, MICROMETRE, MILLIMETRE_PER_SECOND, NEWTON, ONE, RPM, Unit,
-    WATT, azimuth_axis, points,
+    AxisUnit, DEGREE, GIGAPASCAL, MEGAWATT_PER_SQUARE_METRE, MICROMETRE, MILLIMETRE_PER_SECOND, NEWTON, ONE,
+    RPM, WATT, azimuth_axis, points,
 };
 use super::run::{Results, Steps};
 use super::shades::{self, Shades};
 use results::table::Table;
 
 /// A quantity of both contacts of a ball.
-struct ContactColumns {
+struct ContactQuantity {
     name: &'static str,
     title: &'static str,
     axis: &'static str,
     column: &'static str,
-    unit: Unit,
+    unit: AxisUnit,
     /// Differences below are round-off, in the unit.
     resolution: f64,
 }
 
-impl ContactColumns {
+impl ContactQuantity {
     fn y_axis(&self) -> Axis {
         self.unit.axis(self.axis).no_finer_than(self.resolution)
     }
 }
 
-const CONTACTS: [ContactColumns; 3] = [
-    ContactColumns {
+const CONTACTS: [ContactQuantity; 3] = [
+    ContactQuantity {
         name: "ball_force",
         title: "Contact force",
         axis: "contact force",
@@ -38,7 +38,7 @@ const CONTACTS: [ContactColumns; 3] = [
         unit: NEWTON,
         resolution: 1e-6,
     },
-    ContactColumns {
+    ContactQuantity {
         name: "contact_angle",
         title: "Contact angle",
         axis: "contact angle",
@@ -46,7 +46,7 @@ const CONTACTS: [ContactColumns; 3] = [
         unit: DEGREE,
         resolution: 1e-4,
     },
-    ContactColumns {
+    ContactQuantity {
         name: "peak_pressure",
         title: "Peak Hertz pressure",
         axis: "peak pressure",
@@ -57,8 +57,8 @@ const CONTACTS: [ContactColumns; 3] = [
 ];
 
 /// What contacts of free balls have besides.
-const OF_FREE_BALLS: [ContactColumns; 5] = [
-    ContactColumns {
+const OF_FREE_BALLS: [ContactQuantity; 5] = [
+    ContactQuantity {
         name: "ball_slip",
         title: "Slip along the rolling direction",
         axis: "slip",
@@ -66,7 +66,7 @@ const OF_FREE_BALLS: [ContactColumns; 5] = [
         unit: MILLIMETRE_PER_SECOND,
         resolution: 1e-6,
     },
-    ContactColumns {
+    ContactQuantity {
         name: "ball_spin",
         title: "Spin",
         axis: "spin",
@@ -74,7 +74,7 @@ const OF_FREE_BALLS: [ContactColumns; 5] = [
         unit: RPM,
         resolution: 1e-6,
     },
-    ContactColumns {
+    ContactQuantity {
         name: "traction",
         title: "Traction along the rolling direction",
         axis: "traction",
@@ -82,7 +82,7 @@ const OF_FREE_BALLS: [ContactColumns; 5] = [
         unit: NEWTON,
         resolution: 1e-6,
     },
-    ContactColumns {
+    ContactQuantity {
         name: "friction_power",
         title: "Friction power",
         axis: "power",
@@ -90,7 +90,7 @@ const OF_FREE_BALLS: [ContactColumns; 5] = [
         unit: WATT,
         resolution: 1e-9,
     },
-    ContactColumns {
+    ContactQuantity {
         name: "pv",
         title: "Largest pressure times sliding speed",
         axis: "pv",
@@ -101,8 +101,8 @@ const OF_FREE_BALLS: [ContactColumns; 5] = [
 ];
 
 /// What lubricated contacts have besides.
-const OF_FILMS: [ContactColumns; 2] = [
-    ContactColumns {
+const OF_FILMS: [ContactQuantity; 2] = [
+    ContactQuantity {
         name: "film_minimum",
         title: "Least thickness of the film",
         axis: "film",
@@ -110,7 +110,7 @@ const OF_FILMS: [ContactColumns; 2] = [
         unit: MICROMETRE,
         resolution: 1e-9,
     },
-    ContactColumns {
+    ContactQuantity {
         name: "lambda",
         title: "Film over roughness",
         axis: "lambda",
@@ -127,7 +127,7 @@ pub fn figures(results: &Results, choice: &Choice) -> anyhow::Result<Vec<Named>>
     let Some(table) = &results.balls else {
         return Ok(Vec::new());
     };
-    let steps = Rows::new(table)?;
+    let steps = BallRows::new(table)?;
     let mut figures = Vec::new();
     let is_free = table.find("inner_slip_rolling_m_per_s").is_some();
     let of_free_balls = OF_FREE_BALLS.iter().filter(|_| is_free);
@@ -156,20 +156,20 @@ pub fn figures(results: &Results, choice: &Choice) -> anyhow::Result<Vec<Named>>
 }
 
 /// Which rows of the table belong to which step and ball.
-struct Rows {
+struct BallRows {
     /// First row of each step, and the end, `[n_steps + 1]`.
     starts: Vec<usize>,
     balls: Vec<usize>,
 }
 
-impl Rows {
-    fn new(table: &Table) -> anyhow::Result<Rows> {
+impl BallRows {
+    fn new(table: &Table) -> anyhow::Result<BallRows> {
         let steps = table.column("step")?;
         let first_of_step = |&row: &usize| row == 0 || steps[row] != steps[row - 1];
         let mut starts: Vec<usize> = (0..steps.len()).filter(first_of_step).collect();
         starts.push(steps.len());
         let balls = table.column("ball")?.iter().map(|b| *b as usize).collect();
-        Ok(Rows { starts, balls })
+        Ok(BallRows { starts, balls })
     }
 
     fn n_steps(&self) -> usize {
@@ -193,7 +193,7 @@ impl Rows {
 }
 
 /// Values of a contact at the given rows; an unloaded contact has a force but no angle and no pressure.
-fn values(table: &Table, contact: &ContactColumns, side: &str, rows: &[usize]) -> anyhow::Result<Vec<f64>> {
+fn values(table: &Table, contact: &ContactQuantity, side: &str, rows: &[usize]) -> anyhow::Result<Vec<f64>> {
     let column = table.column(&format!("{side}_{}", contact.column))?;
     let force = table.column(&format!("{side}_force_n"))?;
     let value = |&row: &usize| match force[row] > 0.0 || contact.column == "force_n" {
@@ -204,7 +204,7 @@ fn values(table: &Table, contact: &ContactColumns, side: &str, rows: &[usize]) -
 }
 
 /// One equilibrium: both contacts against the azimuth of the balls.
-fn round(table: &Table, rows: &[usize], contact: &ContactColumns) -> anyhow::Result<Named> {
+fn round(table: &Table, rows: &[usize], contact: &ContactQuantity) -> anyhow::Result<Named> {
     let title = format!("{} of the balls", contact.title);
     let mut figure = Figure::new(title, azimuth_axis(), contact.y_axis());
     for side in SIDES {
@@ -218,8 +218,8 @@ fn round(table: &Table, rows: &[usize], contact: &ContactColumns) -> anyhow::Res
 fn round_each(
     results: &Results,
     table: &Table,
-    steps: &Rows,
-    contact: &ContactColumns,
+    steps: &BallRows,
+    contact: &ContactQuantity,
 ) -> anyhow::Result<Named> {
     let title = format!("{} of the balls at the inner ring", contact.title);
     let mut figure = Figure::new(title, azimuth_axis(), contact.y_axis());
@@ -261,8 +261,8 @@ fn by_azimuth(table: &Table, rows: &[usize], values: &[f64]) -> anyhow::Result<V
 fn over_values(
     results: &Results,
     table: &Table,
-    steps: &Rows,
-    contact: &ContactColumns,
+    steps: &BallRows,
+    contact: &ContactQuantity,
 ) -> anyhow::Result<Named> {
     let Some((x_axis, x)) = results.against(table)? else {
         unreachable!("a single step has nothing to be plotted against")
@@ -300,7 +300,7 @@ fn over_values(
 }
 
 /// Whether a ball moves round.
-fn turns(table: &Table, steps: &Rows, ball: usize) -> anyhow::Result<bool> {
+fn turns(table: &Table, steps: &BallRows, ball: usize) -> anyhow::Result<bool> {
     let (rows, azimuth) = (steps.of_ball(ball)?, table.column("azimuth_rad")?);
     Ok(rows.iter().any(|&row| azimuth[row] != azimuth[rows[0]]))
 }
@@ -309,8 +309,8 @@ fn turns(table: &Table, steps: &Rows, ball: usize) -> anyhow::Result<bool> {
 fn in_time(
     results: &Results,
     table: &Table,
-    steps: &Rows,
-    contact: &ContactColumns,
+    steps: &BallRows,
+    contact: &ContactQuantity,
     ball: usize,
 ) -> anyhow::Result<Named> {
     let rows = steps.of_ball(ball)?;
@@ -328,7 +328,12 @@ fn in_time(
 }
 
 /// A motion: the contacts of one ball against its azimuth.
-fn way_round(table: &Table, steps: &Rows, contact: &ContactColumns, ball: usize) -> anyhow::Result<Named> {
+fn way_round(
+    table: &Table,
+    steps: &BallRows,
+    contact: &ContactQuantity,
+    ball: usize,
+) -> anyhow::Result<Named> {
     let rows = steps.of_ball(ball)?;
     let azimuth = table.column("azimuth_rad")?;
     let title = format!("{} of ball {ball} on its way round", contact.title);
@@ -352,7 +357,7 @@ fn way_round(table: &Table, steps: &Rows, contact: &ContactColumns, ball: usize)
 }
 
 /// A motion: displacement of one ball in its meridian plane against time.
-fn displacement(results: &Results, table: &Table, steps: &Rows, ball: usize) -> anyhow::Result<Named> {
+fn displacement(results: &Results, table: &Table, steps: &BallRows, ball: usize) -> anyhow::Result<Named> {
     let rows = steps.of_ball(ball)?;
     let Some((x_axis, x)) = results.against(table)? else {
         unreachable!("a motion has times")

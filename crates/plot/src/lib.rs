@@ -42,7 +42,7 @@ use results::whole::{make_output_folder, require_own_picture, write_picture};
 
 pub use choice::Choice;
 pub use named::Named;
-pub use quantity::Unit;
+pub use quantity::AxisUnit;
 pub use run::{Results, Steps};
 
 /// What the command line asks for.

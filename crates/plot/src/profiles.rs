@@ -8,14 +8,14 @@ use results::table::{Rows, read_rows};
 
 use super::choice::Choice;
 use super::named::Named;
-use super::quantity::{self, DEGREE, MEGAPASCAL, MICROMETRE, Unit, points};
+use super::quantity::{self, AxisUnit, DEGREE, MEGAPASCAL, MICROMETRE, points};
 use super::run::{Results, Steps};
 use super::shades::{self, Shades};
 
 /// Table of all profiles.
 const FILE: &str = "profiles.csv";
 /// What a line may run along: column, name of the axis and unit.
-const COORDINATES: [(&str, &str, Unit); 3] = [
+const COORDINATES: [(&str, &str, AxisUnit); 3] = [
     ("groove_angle_rad", "groove angle", DEGREE),
     ("depth_m", "depth below the raceway", MICROMETRE),
     ("azimuth_rad", "azimuth on the ring", DEGREE),

@@ -4,7 +4,7 @@ use figure::Axis;
 
 /// A unit that axes show.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Unit {
+pub struct AxisUnit {
     /// Its sign.
     pub sign: &'static str,
     /// What an SI value is multiplied with.
@@ -12,114 +12,114 @@ pub struct Unit {
 }
 
 /// Micrometre.
-pub const MICROMETRE: Unit = Unit {
+pub const MICROMETRE: AxisUnit = AxisUnit {
     sign: "µm",
     factor: 1e6,
 };
 /// Millimetre.
-pub const MILLIMETRE: Unit = Unit {
+pub const MILLIMETRE: AxisUnit = AxisUnit {
     sign: "mm",
     factor: 1e3,
 };
 /// Degree.
-pub const DEGREE: Unit = Unit {
+pub const DEGREE: AxisUnit = AxisUnit {
     sign: "deg",
     factor: 180.0 / std::f64::consts::PI,
 };
 /// Newton.
-pub const NEWTON: Unit = Unit {
+pub const NEWTON: AxisUnit = AxisUnit {
     sign: "N",
     factor: 1.0,
 };
 /// Megapascal.
-pub const MEGAPASCAL: Unit = Unit {
+pub const MEGAPASCAL: AxisUnit = AxisUnit {
     sign: "MPa",
     factor: 1e-6,
 };
 /// Gigapascal.
-pub const GIGAPASCAL: Unit = Unit {
+pub const GIGAPASCAL: AxisUnit = AxisUnit {
     sign: "GPa",
     factor: 1e-9,
 };
 /// Millisecond.
-pub const MILLISECOND: Unit = Unit {
+pub const MILLISECOND: AxisUnit = AxisUnit {
     sign: "ms",
     factor: 1e3,
 };
 /// Milliradian.
-pub const MILLIRADIAN: Unit = Unit {
+pub const MILLIRADIAN: AxisUnit = AxisUnit {
     sign: "mrad",
     factor: 1e3,
 };
 /// Millijoule.
-pub const MILLIJOULE: Unit = Unit {
+pub const MILLIJOULE: AxisUnit = AxisUnit {
     sign: "mJ",
     factor: 1e3,
 };
 
 /// Millimetre per second.
-pub const MILLIMETRE_PER_SECOND: Unit = Unit {
+pub const MILLIMETRE_PER_SECOND: AxisUnit = AxisUnit {
     sign: "mm/s",
     factor: 1e3,
 };
 /// Revolutions per minute.
-pub const RPM: Unit = Unit {
+pub const RPM: AxisUnit = AxisUnit {
     sign: "rpm",
     factor: 30.0 / std::f64::consts::PI,
 };
 /// Watt.
-pub const WATT: Unit = Unit {
+pub const WATT: AxisUnit = AxisUnit {
     sign: "W",
     factor: 1.0,
 };
 /// Megawatt per square metre: gigapascal times millimetre per second.
-pub const MEGAWATT_PER_SQUARE_METRE: Unit = Unit {
+pub const MEGAWATT_PER_SQUARE_METRE: AxisUnit = AxisUnit {
     sign: "MW/m²",
     factor: 1e-6,
 };
 /// A number without unit.
-pub const ONE: Unit = Unit {
+pub const ONE: AxisUnit = AxisUnit {
     sign: "1",
     factor: 1.0,
 };
 /// Micrometre per metre.
-pub const MICROSTRAIN: Unit = Unit {
+pub const MICROSTRAIN: AxisUnit = AxisUnit {
     sign: "µm/m",
     factor: 1e6,
 };
 /// Newton metre.
-pub const NEWTON_METRE: Unit = Unit {
+pub const NEWTON_METRE: AxisUnit = AxisUnit {
     sign: "N m",
     factor: 1.0,
 };
 
 /// Endings of column names, longer ones before those that they end with, and the units that show them.
-const ENDINGS: [(&str, Unit); 13] = [
+const ENDINGS: [(&str, AxisUnit); 13] = [
     ("_rad_per_s", RPM),
     (
         "_n_s_per_m",
-        Unit {
+        AxisUnit {
             sign: "N s/mm",
             factor: 1e-3,
         },
     ),
     (
         "_m_per_s2",
-        Unit {
+        AxisUnit {
             sign: "m/s²",
             factor: 1.0,
         },
     ),
     (
         "_m_per_s",
-        Unit {
+        AxisUnit {
             sign: "m/s",
             factor: 1.0,
         },
     ),
     (
         "_kg_per_m3",
-        Unit {
+        AxisUnit {
             sign: "kg/m³",
             factor: 1.0,
         },
@@ -129,7 +129,7 @@ const ENDINGS: [(&str, Unit); 13] = [
     ("_pa", MEGAPASCAL),
     (
         "_kg",
-        Unit {
+        AxisUnit {
             sign: "kg",
             factor: 1.0,
         },
@@ -141,14 +141,14 @@ const ENDINGS: [(&str, Unit); 13] = [
 ];
 
 /// Name without its ending, and the unit; a number without unit has no ending.
-pub fn split(column: &str) -> (&str, Unit) {
+pub fn split(column: &str) -> (&str, AxisUnit) {
     ENDINGS
         .iter()
         .find_map(|(ending, unit)| Some((column.strip_suffix(ending)?, *unit)))
         .unwrap_or((column, ONE))
 }
 
-impl Unit {
+impl AxisUnit {
     /// A linear axis of a quantity in this unit.
     pub fn axis(self, name: impl Into<String>) -> Axis {
         Axis::linear(name, self.sign)
@@ -187,7 +187,7 @@ mod tests {
             split("p_moment_x_n_m"),
             (
                 "p_moment_x",
-                Unit {
+                AxisUnit {
                     sign: "N m",
                     factor: 1.0
                 }
@@ -199,7 +199,7 @@ mod tests {
             split("bearing.balls"),
             (
                 "bearing.balls",
-                Unit {
+                AxisUnit {
                     sign: "1",
                     factor: 1.0
                 }

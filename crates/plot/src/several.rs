@@ -6,14 +6,14 @@ use figure::{Axis, Figure, Series};
 use results::several::{BEARINGS_TABLE, SHAFT_TABLE};
 use results::table::Table;
 
-use super::quantity::{MICROMETRE, Unit, points};
+use super::quantity::{AxisUnit, MICROMETRE, points};
 use super::run::axis_of;
 
-const MILLIMETRE: Unit = Unit {
+const MILLIMETRE: AxisUnit = AxisUnit {
     sign: "mm",
     factor: 1e3,
 };
-const NEWTON: Unit = Unit {
+const NEWTON: AxisUnit = AxisUnit {
     sign: "N",
     factor: 1.0,
 };
@@ -48,7 +48,7 @@ fn last_rows(table: &Table) -> anyhow::Result<Vec<usize>> {
 
 /// The line of the shaft at the last step.
 fn line(shaft: &Table, bearings: &Table) -> anyhow::Result<Figure> {
-    let pick = |table: &Table, rows: &[usize], column: &str, unit: Unit| -> anyhow::Result<Vec<f64>> {
+    let pick = |table: &Table, rows: &[usize], column: &str, unit: AxisUnit| -> anyhow::Result<Vec<f64>> {
         let values = unit.of(table.column(column)?);
         Ok(rows.iter().map(|&i| values[i]).collect())
     };

@@ -3,7 +3,7 @@
 use figure::{Figure, Series};
 
 use super::named::Named;
-use super::quantity::{MICROMETRE, MILLIRADIAN, NEWTON_METRE, RPM, Unit, WATT, points};
+use super::quantity::{AxisUnit, MICROMETRE, MILLIRADIAN, NEWTON_METRE, RPM, WATT, points};
 use super::run::{Results, Steps};
 
 /// The figures of `shaft.csv`; none for a single step.
@@ -65,7 +65,7 @@ struct Chart {
     name: &'static str,
     title: &'static str,
     axis: &'static str,
-    unit: Unit,
+    unit: AxisUnit,
     columns: &'static [(&'static str, &'static str)],
 }
 

@@ -7,16 +7,16 @@ use results::several_stiffness::BEARING_STIFFNESS;
 use results::stiffness::STIFFNESS_TABLE;
 use results::table::Table;
 
-use super::quantity::{Unit, points};
+use super::quantity::{AxisUnit, points};
 use super::run::axis_of;
 
 /// Newtons per micrometre.
-const NEWTON_PER_MICROMETRE: Unit = Unit {
+const NEWTON_PER_MICROMETRE: AxisUnit = AxisUnit {
     sign: "N/µm",
     factor: 1e-6,
 };
 /// Newton metres per milliradian.
-const MOMENT_PER_MILLIRADIAN: Unit = Unit {
+const MOMENT_PER_MILLIRADIAN: AxisUnit = AxisUnit {
     sign: "N m/mrad",
     factor: 1e-3,
 };
@@ -35,7 +35,7 @@ pub fn figures(dir: &Path) -> anyhow::Result<Vec<(&'static str, Figure)>> {
         return Ok(Vec::new());
     };
     let (axis, x) = axis_of(&table, column, "point")?;
-    let of = |unit: Unit, names: &[&str], title: &str| -> anyhow::Result<Figure> {
+    let of = |unit: AxisUnit, names: &[&str], title: &str| -> anyhow::Result<Figure> {
         let figure = Figure::new(title, axis.clone(), stiffness_axis(unit));
         names.iter().try_fold(figure, |figure, name| {
             let k = unit.of(table.column(&format!("k_{name}_{name}"))?);
@@ -74,6 +74,6 @@ fn is_of_several(dir: &Path) -> anyhow::Result<bool> {
         .any(|name| is_one(&name)))
 }
 
-fn stiffness_axis(unit: Unit) -> Axis {
+fn stiffness_axis(unit: AxisUnit) -> Axis {
     unit.axis("stiffness").including(0.0)
 }

@@ -1,7 +1,7 @@
 //! Key numbers of a run from its tables: smallest, mean and largest over all rows of a table, and of a motion the
 //! root mean square of what oscillates.
 
-use plot::{Results, Steps, Unit, quantity};
+use plot::{AxisUnit, Results, Steps, quantity};
 use results::table::Table;
 
 /// A row of the table of key numbers, in the unit shown.
@@ -20,7 +20,7 @@ pub struct PageNumber {
     pub rms: Option<f64>,
 }
 
-const BALLS: [(&str, &str, Unit); 6] = [
+const BALLS: [(&str, &str, AxisUnit); 6] = [
     ("inner contact force", "inner_force_n", quantity::NEWTON),
     ("outer contact force", "outer_force_n", quantity::NEWTON),
     (
@@ -45,7 +45,7 @@ const BALLS: [(&str, &str, Unit); 6] = [
     ),
 ];
 
-const SHAFT: [(&str, &str, Unit); 5] = [
+const SHAFT: [(&str, &str, AxisUnit); 5] = [
     ("shaft displacement x", "x_m", quantity::MICROMETRE),
     ("shaft displacement y", "y_m", quantity::MICROMETRE),
     ("shaft displacement z", "z_m", quantity::MICROMETRE),
@@ -74,7 +74,7 @@ pub fn numbers(results: &Results) -> anyhow::Result<Vec<PageNumber>> {
 }
 
 /// Over all balls and steps; angles only where there is a force.
-fn of_balls(table: &Table, name: &str, column: &str, unit: Unit) -> anyhow::Result<Option<PageNumber>> {
+fn of_balls(table: &Table, name: &str, column: &str, unit: AxisUnit) -> anyhow::Result<Option<PageNumber>> {
     let side = column.split('_').next().unwrap_or(column);
     let force = table.column(&format!("{side}_force_n"))?;
     let values = table.column(column)?.iter().zip(force);
@@ -84,7 +84,7 @@ fn of_balls(table: &Table, name: &str, column: &str, unit: Unit) -> anyhow::Resu
 }
 
 /// None without a value.
-fn statistics(name: &str, unit: Unit, values: impl Iterator<Item = f64> + Clone) -> Option<PageNumber> {
+fn statistics(name: &str, unit: AxisUnit, values: impl Iterator<Item = f64> + Clone) -> Option<PageNumber> {
     let values = values.map(|v| v * unit.factor);
     let n = values.clone().count();
     if n == 0 {

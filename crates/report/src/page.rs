@@ -8,7 +8,7 @@ use super::bearing;
 use super::html::{Cells, digits, row, table};
 use super::numbers::PageNumber;
 use super::pictures::Picture;
-use super::source::Source;
+use super::source::ReportedRun;
 
 const STYLE: &str = include_str!("style.css");
 
@@ -19,7 +19,7 @@ const SCRIPT: &str = include_str!("figures.js");
 const ROUND_OFF: f64 = 1e-9;
 
 /// The HTML of a run of one bearing.
-pub fn page(source: &Source, numbers: &[PageNumber], pictures: &[Picture]) -> String {
+pub fn page(source: &ReportedRun, numbers: &[PageNumber], pictures: &[Picture]) -> String {
     let summary = &source.summary;
     let title = text(summary, "title");
     let parts = [
@@ -61,7 +61,7 @@ pub fn is_page(content: &[u8]) -> bool {
 }
 
 /// What was run, by which program, and how it ended.
-fn about(source: &Source) -> String {
+fn about(source: &ReportedRun) -> String {
     let summary = &source.summary;
     let effects = list(summary, "effects").join(", ").replace('_', " ");
     let rows = [
@@ -125,7 +125,7 @@ pub fn remarks(heading: &str, lines: &[String]) -> String {
     }
 }
 
-pub fn warnings(source: &Source) -> String {
+pub fn warnings(source: &ReportedRun) -> String {
     let warnings = list(&source.summary, "warnings");
     let items: Vec<String> = source
         .doubts
@@ -383,7 +383,7 @@ mod tests {
     #[test]
     fn texts_are_escaped() {
         let summary = serde_json::json!({ "title": "a < b & <script>", "warnings": ["x > y"] });
-        let source = Source {
+        let source = ReportedRun {
             summary,
             doubts: vec![],
             scene: Some("# <pre>".into()),

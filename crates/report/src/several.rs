@@ -16,13 +16,13 @@ use super::page::{
     cost, document, energy, figures, key_numbers, list, meshes, program, remarks, scene, text, warnings,
 };
 use super::pictures::{Picture, drawn};
-use super::source::{self, Source};
+use super::source::{self, ReportedRun};
 use super::{bearing, pictures};
 
 /// A bearing of the list.
-struct Part {
+struct ListedBearing {
     name: String,
-    source: Source,
+    source: ReportedRun,
     numbers: Vec<PageNumber>,
     pictures: Vec<Picture>,
 }
@@ -67,7 +67,7 @@ pub fn page(dir: &Path, names: &[String], choice: &Choice) -> Result<(String, Ve
 }
 
 /// Reads a bearing; its folder has to be there.
-fn part(dir: &Path, name: &str, choice: &Choice) -> Result<(Part, Vec<String>), Failure> {
+fn part(dir: &Path, name: &str, choice: &Choice) -> Result<(ListedBearing, Vec<String>), Failure> {
     let folder = dir.join(name);
     if !folder.is_dir() {
         return Err(Failure::User(anyhow!(
@@ -84,7 +84,7 @@ fn part(dir: &Path, name: &str, choice: &Choice) -> Result<(Part, Vec<String>), 
     let problems = source.doubts.iter().cloned().chain(problems).collect();
     let name = name.to_string();
     Ok((
-        Part {
+        ListedBearing {
             name,
             source,
             numbers,
@@ -94,7 +94,7 @@ fn part(dir: &Path, name: &str, choice: &Choice) -> Result<(Part, Vec<String>), 
     ))
 }
 
-fn html(source: &Source, shaft: &[pictures::Picture], parts: &[Part]) -> String {
+fn html(source: &ReportedRun, shaft: &[pictures::Picture], parts: &[ListedBearing]) -> String {
     let summary = &source.summary;
     let title = text(summary, "title");
     let mut blocks = vec![
@@ -114,7 +114,7 @@ fn html(source: &Source, shaft: &[pictures::Picture], parts: &[Part]) -> String 
 }
 
 /// What was run, by which program, and how it ended.
-fn about(source: &Source) -> String {
+fn about(source: &ReportedRun) -> String {
     let summary = &source.summary;
     let shaft = &summary["shaft"];
     let nodes = shaft["nodes"].as_u64();
@@ -134,15 +134,15 @@ fn about(source: &Source) -> String {
 }
 
 /// Where the parts of the bearings are. Their names are letters, digits, _ and -.
-fn contents(parts: &[Part]) -> String {
-    let link = |part: &Part| format!("<a href=\"#bearing-{0}\">{0}</a>", part.name);
+fn contents(parts: &[ListedBearing]) -> String {
+    let link = |part: &ListedBearing| format!("<a href=\"#bearing-{0}\">{0}</a>", part.name);
     let links: Vec<String> = parts.iter().map(link).collect();
     format!("<p class=\"note\">Bearings: {}</p>", links.join(", "))
 }
 
 /// Key numbers: a row per bearing at the end of the run, in the frame of the shaft.
-fn bearings(summary: &Value, parts: &[Part]) -> String {
-    let of_part = |part: &Part| {
+fn bearings(summary: &Value, parts: &[ListedBearing]) -> String {
+    let of_part = |part: &ListedBearing| {
         let entry = &summary["bearings"][&part.name];
         let number = |key: &str| entry.pointer(key).and_then(Value::as_f64);
         let shown = |(_, key, factor, decimals): &(&str, &str, f64, usize)| {
@@ -170,7 +170,7 @@ fn bearings(summary: &Value, parts: &[Part]) -> String {
 }
 
 /// The part of a bearing, in its own frame; its headings are one level below that of its name.
-fn of_bearing(part: &Part, summary: &Value) -> String {
+fn of_bearing(part: &ListedBearing, summary: &Value) -> String {
     let (own, source) = (&part.source.summary, &part.source);
     let entry = &summary["bearings"][&part.name];
     let position = entry["position_m"].as_f64().unwrap_or(f64::NAN);
@@ -206,8 +206,8 @@ fn of_bearing(part: &Part, summary: &Value) -> String {
 mod tests {
     use super::*;
 
-    fn source(summary: Value) -> Source {
-        Source {
+    fn source(summary: Value) -> ReportedRun {
+        ReportedRun {
             summary,
             doubts: vec![],
             scene: None,
@@ -226,7 +226,7 @@ mod tests {
         };
         let summary = serde_json::json!({ "title": "pair", "shaft": { "model": "beam", "nodes": 25 },
             "bearings": { "front": entry(0.06), "rear": entry(0.13) } });
-        let part = |name: &str| Part {
+        let part = |name: &str| ListedBearing {
             name: name.into(),
             source: source(serde_json::json!({ "dofs": { "inner": 300 }, "elements": { "inner": 64 } })),
             numbers: vec![],

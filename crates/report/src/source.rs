@@ -11,7 +11,7 @@ use results::summary::SUMMARY_FILE;
 use serde_json::Value;
 
 /// The run.
-pub struct Source {
+pub struct ReportedRun {
     /// `summary.json`.
     pub summary: Value,
     /// What is wrong with the tables.
@@ -27,7 +27,7 @@ pub struct Source {
 }
 
 /// Reads the run in `dir`, which must have ended: its summary is what the page is about.
-pub fn read(dir: &Path) -> Result<Source, Failure> {
+pub fn read(dir: &Path) -> Result<ReportedRun, Failure> {
     let path = dir.join(SUMMARY_FILE);
     if !path.exists() {
         return Err(anyhow!(
@@ -49,7 +49,7 @@ pub fn read(dir: &Path) -> Result<Source, Failure> {
         }
         None => (None, String::new()),
     };
-    Ok(Source {
+    Ok(ReportedRun {
         summary,
         doubts: doubts(dir)?,
         scene,

@@ -23,7 +23,14 @@ pub const WARNINGS: &str = "warnings";
 pub const SOURCE_COMMIT: &str = env!("RACEWAY_COMMIT");
 
 /// Keys and tables of a scene that a resumed run may change: none of them touches what it computes.
-pub const MAY_CHANGE: [&str; 4] = ["dynamic.duration", "dynamic.output_every", "output", "life"];
+pub const MAY_CHANGE: [&str; 6] = [
+    "dynamic.duration",
+    "dynamic.output_every",
+    "quasi_static.duration",
+    "quasi_static.output_every",
+    "output",
+    "life",
+];
 
 /// Identity of a run, which all its files carry: a fingerprint of its scene, without [`MAY_CHANGE`], and of its
 /// meshes. Runs with one identity compute the same, so that a file of one is as good as that of another. The form
@@ -128,10 +135,7 @@ pub fn require_same_meshes(scene: &Scene, texts: &BTreeMap<String, String>) -> a
 }
 
 fn flexible(scene: &Scene, side: Side) -> Option<&FlexibleRing> {
-    match side {
-        Side::Inner => scene.inner.body.as_ref(),
-        Side::Outer => scene.outer.body.as_ref(),
-    }
+    side.choose(scene.inner.body.as_ref(), scene.outer.body.as_ref())
 }
 
 fn mesh_key(side: Side) -> String {

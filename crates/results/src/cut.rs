@@ -13,7 +13,7 @@ use checkpoint::{FileStamp, GrowingFile, open_own, start_of};
 use crate::integrity::{doubt, newest_agreeing};
 
 /// Where a table is to be cut.
-pub struct Cut {
+pub struct TableCut {
     path: PathBuf,
     header: String,
     /// What stays.
@@ -22,7 +22,7 @@ pub struct Cut {
     length: u64,
 }
 
-impl Cut {
+impl TableCut {
     /// The table `name` in `dir` is cut where a step file says that it ended, and must be what that file
     /// tells of. Its header must be `header`.
     pub fn at_stamp(
@@ -30,7 +30,7 @@ impl Cut {
         name: &str,
         header: &str,
         (last, stamp): (u64, FileStamp),
-    ) -> anyhow::Result<Cut> {
+    ) -> anyhow::Result<TableCut> {
         let path = dir.join(name);
         if let Some(doubt) = doubt(&path, stamp, last)? {
             let advice = match newest_agreeing(dir, last) {
@@ -48,7 +48,7 @@ impl Cut {
             bytes: Vec::new(),
         };
         require_header(&mut lines, header, &path)?;
-        Ok(Cut {
+        Ok(TableCut {
             path,
             header: header.to_string(),
             keep: stamp,
@@ -57,7 +57,7 @@ impl Cut {
     }
 
     /// The same for a step of a version that kept no checksums of tables: there must be rows up to step `last`.
-    pub fn find(dir: &Path, name: &str, header: &str, last: u64) -> anyhow::Result<Cut> {
+    pub fn find(dir: &Path, name: &str, header: &str, last: u64) -> anyhow::Result<TableCut> {
         let path = dir.join(name);
         let file = open_own(&path)?;
         let length = file.metadata().map_or(0, |data| data.len());
@@ -84,7 +84,7 @@ impl Cut {
                 path.display()
             ));
         }
-        Ok(Cut {
+        Ok(TableCut {
             keep: start_of(&path, keep)?,
             path,
             header: header.to_string(),
@@ -153,7 +153,7 @@ mod tests {
     const TABLE: &str = "step,x\n0,1.5\n1,2.5\n1,3.5\n2,4.5\n3,5.";
 
     fn cut(dir: &Path, last: u64) -> anyhow::Result<()> {
-        let mut file = Cut::find(dir, "t.csv", "step,x", last)?.make(&mut || {
+        let mut file = TableCut::find(dir, "t.csv", "step,x", last)?.make(&mut || {
             let aside = dir.join("aside");
             std::fs::create_dir_all(&aside)?;
             Ok(aside)

@@ -8,7 +8,7 @@ use comm::print;
 use contact::Side;
 use dynamics::{Hold, Model, RingModel};
 use fem::quadrature::stiffness_rule;
-use scene::{Analysis, Dynamic, Precision, Scene, StressOutput};
+use scene::{Analysis, Dynamic, FieldPrecision, Scene, StressOutput};
 
 use super::fields;
 use super::region::Region;
@@ -157,10 +157,10 @@ fn force_bytes(n_points: u64) -> u64 {
 }
 
 /// Bytes of a number.
-fn bytes_of(precision: Precision) -> u64 {
+fn bytes_of(precision: FieldPrecision) -> u64 {
     match precision {
-        Precision::F32 => 4,
-        Precision::F64 => 8,
+        FieldPrecision::F32 => 4,
+        FieldPrecision::F64 => 8,
     }
 }
 

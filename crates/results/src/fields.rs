@@ -11,7 +11,7 @@ use scene::{KeptFields, RingFrame, Scene};
 
 use super::bodies::{BodyField, bodies_of, body_fields};
 use super::on_ball::force_on_ball;
-use super::ring_stress::{Basis, Gathered, RingStress, ShownRing, StressFields};
+use super::ring_stress::{Gathered, RingStress, ShownRing, StressBasis, StressFields};
 use super::shown::{RingField, Shown, Turn};
 use crate::failure::Failure;
 
@@ -178,8 +178,8 @@ pub fn shown_ring(
     Ok(ShownRing {
         own_stress: ring.own_stress.clone(),
         basis: match gathered {
-            Some(stress) => Basis::Stress(stress),
-            None => Basis::Displacement(ring.strained.into_owned()),
+            Some(stress) => StressBasis::Stress(stress),
+            None => StressBasis::Displacement(ring.strained.into_owned()),
         },
         turn: ring.turn,
         patches,

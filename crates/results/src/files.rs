@@ -23,7 +23,7 @@ use super::folder;
 use super::log;
 use super::memory::Forecasts;
 use super::motion_fields::RestartState;
-use super::probes::Probes;
+use super::probes::PlacedProbes;
 use super::reduction::{REDUCTION_FILE, ReducedStress, StressReduction};
 use super::region::Region;
 use super::ring_stress::{Gathered, RingStress};
@@ -66,7 +66,7 @@ pub struct ResumedFrom<'a> {
 struct Open {
     output: BackgroundOutput,
     tables: Tables,
-    probes: Option<Probes>,
+    probes: Option<PlacedProbes>,
     region: Option<Arc<Region>>,
     reduction: Option<StressReduction>,
 }
@@ -131,7 +131,8 @@ impl Files {
         Ok(files)
     }
 
-    /// Opens the files of a locked folder to go on after its step `last`. Collective.
+    /// Opens the files of a locked folder, of a run or of a part of it, to go on after a step; whoever knows which says
+    /// where they are. Collective.
     pub fn resume(
         scene: &Scene,
         model: &Model,
@@ -164,7 +165,6 @@ impl Files {
         let mesh = mesh.map_or_else(|| mesh_file(scene, model), Ok)?;
         let opened = Output::resume_of(lock, &mesh, storage(scene), last)?;
         drop(mesh);
-        say_folder(&dir);
         let (mut output, damaged, mut superseded) = (opened.output, opened.damaged, opened.superseded);
         output.describe(texts)?;
         folder::note_restored(opened.mesh_restored, &dir);
@@ -358,7 +358,7 @@ impl Files {
         };
         let mut clock = Stopwatch::start();
         let written = open.output.finish()?;
-        let of_probes = open.probes.as_ref().and_then(Probes::near_field_seconds);
+        let of_probes = open.probes.as_ref().and_then(PlacedProbes::near_field_seconds);
         let near_fields = [self.ring_stress.near_field_seconds(), of_probes];
         let run = written.output.run().map(str::to_string);
         if let Some(reduction) = &open.reduction {
@@ -394,7 +394,7 @@ impl Files {
 }
 
 impl Open {
-    fn new(output: Output, tables: Tables, probes: Option<Probes>) -> Result<Open, Failure> {
+    fn new(output: Output, tables: Tables, probes: Option<PlacedProbes>) -> Result<Open, Failure> {
         let companions = tables.companions()?;
         Ok(Open {
             output: BackgroundOutput::start(output, QUEUE, companions)?,
@@ -407,11 +407,11 @@ impl Open {
 }
 
 /// Columns of the tables that probes and films need.
-fn own_columns(scene: &Scene, model: &Model, probes: Option<&Probes>) -> OwnColumns {
+fn own_columns(scene: &Scene, model: &Model, probes: Option<&PlacedProbes>) -> OwnColumns {
     OwnColumns {
         film: FilmLaw::new(scene, model),
-        probes: probes.and_then(Probes::columns),
-        profiles: probes.and_then(Probes::profile_columns),
+        probes: probes.and_then(PlacedProbes::columns),
+        profiles: probes.and_then(PlacedProbes::profile_columns),
     }
 }
 
@@ -455,8 +455,8 @@ pub fn mesh_file(scene: &Scene, model: &Model) -> anyhow::Result<MeshFile> {
 /// How fields are stored.
 pub fn storage(scene: &Scene) -> Storage {
     let precision = |asked| match asked {
-        scene::Precision::F32 => Precision::F32,
-        scene::Precision::F64 => Precision::F64,
+        scene::FieldPrecision::F32 => Precision::F32,
+        scene::FieldPrecision::F64 => Precision::F64,
     };
     Storage {
         stress: precision(scene.output.precision),

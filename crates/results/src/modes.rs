@@ -23,7 +23,7 @@ use super::fields;
 use super::files::{mesh_file, say_folder, storage};
 use super::folder;
 use super::mounting::{ClearanceSummary, FitSummary, fits};
-use super::ring_stress::{Basis, RingStress, ShownRing};
+use super::ring_stress::{RingStress, ShownRing, StressBasis};
 use super::shown::Turn;
 use super::snapshot::Snapshot;
 use super::summary::{
@@ -132,7 +132,7 @@ impl ModeFiles {
             displacement.extend(field.chunks_exact(3).map(|u| [u[0], u[1], u[2]]));
             rings[i] = Some(ShownRing {
                 own_stress: None,
-                basis: Basis::Displacement(field),
+                basis: StressBasis::Displacement(field),
                 turn: Turn::new(0.0),
                 patches: Vec::new(),
             });

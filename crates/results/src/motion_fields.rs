@@ -1,9 +1,9 @@
-//! Fields of one instant of a motion; the state of the run is stored beside, bit for bit.
+//! Fields of one instant of a motion, or of an equilibrium in time; the state of the run is stored beside, bit for bit.
 
 use checkpoint::StepRecord;
 use dynamics::Model;
 use dynamics::motion::{Motion, MotionState};
-use scene::{Dynamic, KeptFields, Output, Scene};
+use scene::{Dynamic, KeptFields, OutputSettings, Scene};
 
 use super::fields::Places;
 use super::ring_stress::{Gathered, RingStress};
@@ -33,7 +33,7 @@ pub enum RestartState {
 impl RestartState {
     /// Of the file of a step that is written as the scene asks: every `output.restart_every`-th of them has the state,
     /// and that of the end.
-    pub fn at(step: u64, dynamic: &Dynamic, output: &Output) -> RestartState {
+    pub fn at(step: u64, dynamic: &Dynamic, output: &OutputSettings) -> RestartState {
         let every = dynamic.output_every.saturating_mul(output.restart_every);
         match step == dynamic.n_steps || step.is_multiple_of(every) {
             true => RestartState::Stored,
@@ -62,6 +62,23 @@ impl Recorded {
                 RestartState::Stored => state_arrays::store(state, &motion.shape()),
                 RestartState::Left => Arrays::new(),
             },
+            scene: scene.text.clone(),
+        })
+    }
+
+    /// The same of an equilibrium at a step and its time, s, with the arrays of `state` beside its fields.
+    pub fn of_equilibrium(
+        shown: &Shown<'_>,
+        (step, time): (u64, f64),
+        gathered: Gathered,
+        (scene, kept): (&Scene, KeptFields),
+        state: Arrays,
+    ) -> Result<Recorded, Failure> {
+        Ok(Recorded {
+            step,
+            time,
+            places: Places::new(shown, gathered, scene, kept)?,
+            state,
             scene: scene.text.clone(),
         })
     }

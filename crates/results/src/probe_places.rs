@@ -48,7 +48,7 @@ pub fn place(probe: &NodeProbe, ring: &RingModel, tags: &[u64]) -> Result<NodePl
             let axial = groove.groove_radius * groove.direction(angle)[1];
             (mesh.group_nodes(RACEWAY_GROUP), [groove.radius(angle), axial])
         }
-        SectionPoint::Anywhere(point) => ((0..mesh.n_nodes()).collect(), point),
+        SectionPoint::Anywhere { radius, z } => ((0..mesh.n_nodes()).collect(), [radius, z]),
     };
     let (sin, cos) = probe.azimuth.sin_cos();
     let point = [r * cos, r * sin, groove.centre_z + z];

@@ -17,8 +17,8 @@ use super::timed_near_field::TimedNearField;
 use crate::failure::Failure;
 
 /// The probes of a run, placed on its meshes.
-pub struct Probes {
-    nodes: Vec<NodeProbe>,
+pub struct PlacedProbes {
+    nodes: Vec<PlacedNodeProbe>,
     /// Stress of the probed nodes of each ring, in the order of `nodes`; None where nothing is probed.
     recoveries: [Option<NodeRecovery>; 2],
     /// The probed nodes of each ring for the near field, if the scene asks for it.
@@ -34,7 +34,7 @@ pub struct Probes {
 /// Profile, number of the point, and azimuth, groove angle, depth and stress in SI.
 pub type ProfileRow = (String, usize, Vec<f64>);
 
-struct NodeProbe {
+struct PlacedNodeProbe {
     place: NodePlace,
     side: Side,
     axes: Axes,
@@ -44,9 +44,9 @@ struct NodeProbe {
 const CYLINDRICAL: [&str; 6] = ["rr", "tt", "zz", "rt", "tz", "rz"];
 const CARTESIAN: [&str; 6] = ["xx", "yy", "zz", "xy", "yz", "xz"];
 
-impl Probes {
+impl PlacedProbes {
     /// Finds the nodes of a scene's probes; None when it has no probes, and then nothing is made.
-    pub fn new(scene: &Scene, model: &Model, tags: &NodeTags) -> Result<Option<Probes>, Failure> {
+    pub fn new(scene: &Scene, model: &Model, tags: &NodeTags) -> Result<Option<PlacedProbes>, Failure> {
         if scene.probes.is_empty() {
             return Ok(None);
         }
@@ -57,14 +57,14 @@ impl Probes {
                 (Some(ring), Some(tags)) => (ring, tags),
                 _ => unreachable!("the scene refuses nodes of rigid rings"),
             };
-            Ok::<_, Failure>(NodeProbe {
+            Ok::<_, Failure>(PlacedNodeProbe {
                 place: place(probe, ring, tags)?,
                 side,
                 axes: probe.axes,
                 has_acceleration: probe.has_acceleration,
             })
         };
-        let nodes: Vec<NodeProbe> = scene.probes.nodes.iter().map(find).collect::<Result<_, _>>()?;
+        let nodes: Vec<PlacedNodeProbe> = scene.probes.nodes.iter().map(find).collect::<Result<_, _>>()?;
         let recovery = |side: Side| {
             let own = nodes.iter().filter(|probe| probe.side == side);
             let own: Vec<usize> = own.map(|probe| probe.place.node).collect();
@@ -93,11 +93,11 @@ impl Probes {
                 .expect("the scene refuses a tachometer without a speed");
             (probe.name.clone(), speeds.of(side_of(probe.ring)).clone())
         };
-        Ok(Some(Probes {
+        Ok(Some(PlacedProbes {
             near_fields: Side::BOTH.map(near_field),
             points: lines(&scene.probes.points)?,
             profiles: lines(&scene.probes.profiles)?,
-            recoveries: [recovery(Side::Inner)?, recovery(Side::Outer)?],
+            recoveries: Side::try_both(recovery)?,
             nodes,
             contacts: scene.probes.contacts.clone(),
             gauges: Gauges::new(&scene.probes.gauges, model)?,
@@ -232,7 +232,7 @@ impl Probes {
     }
 }
 
-impl Probes {
+impl PlacedProbes {
     /// Accelerations of a ring where a probe asks for them, m/s^2, `[n_nodes][3]` flat.
     fn accelerations(&self, shown: &Shown<'_>, side: Side) -> Option<Vec<f64>> {
         let own = self.nodes.iter();
@@ -259,7 +259,7 @@ fn require_motion(scene: &Scene) -> Result<(), Failure> {
 }
 
 /// Acceleration of a node along the axes of its probe.
-fn node_acceleration(probe: &NodeProbe, ring: &RingField<'_>, field: &[f64]) -> [f64; 3] {
+fn node_acceleration(probe: &PlacedNodeProbe, ring: &RingField<'_>, field: &[f64]) -> [f64; 3] {
     let node = probe.place.node;
     let own = [0, 1, 2].map(|i| field[3 * node + i]);
     match probe.axes {
@@ -269,7 +269,7 @@ fn node_acceleration(probe: &NodeProbe, ring: &RingField<'_>, field: &[f64]) -> 
 }
 
 /// Stress, von Mises stress and displacement of a node.
-fn node_values(probe: &NodeProbe, ring: &RingField<'_>, stress: [f64; 6]) -> Vec<f64> {
+fn node_values(probe: &PlacedNodeProbe, ring: &RingField<'_>, stress: [f64; 6]) -> Vec<f64> {
     let node = probe.place.node;
     let in_space = ring.turn.tensor(stress);
     let (tensor, displacement) = match probe.axes {

@@ -40,13 +40,13 @@ pub struct RingStress {
 
 /// Recovery of one ring, and the places of its stress for the near field if that is asked for.
 struct Recovery {
-    source: Source,
+    source: RingRecovery,
     points_per_element: usize,
     near_field: Option<TimedNearField>,
 }
 
 /// What recovers the stress of a ring from its displacements.
-enum Source {
+enum RingRecovery {
     /// At the integration points.
     Points(Box<PointStress>),
     /// At the nodes.
@@ -67,7 +67,7 @@ pub struct Gathered {
 /// A flexible ring at one instant.
 pub struct ShownRing {
     /// What its stress follows from.
-    pub basis: Basis,
+    pub basis: StressBasis,
     /// Stress besides that of the displacement; None: none.
     pub own_stress: Option<Arc<OwnStress>>,
     /// From the ring's frame to space.
@@ -77,7 +77,7 @@ pub struct ShownRing {
 }
 
 /// What the stress of a ring follows from, in its own frame.
-pub enum Basis {
+pub enum StressBasis {
     /// Displacement up to a rigid motion, m, `[n_nodes][3]` flat.
     Displacement(Vec<f64>),
     /// The stress that ranks have recovered together, Pa.
@@ -110,7 +110,7 @@ impl RingStress {
         };
         Ok(RingStress {
             kind,
-            rings: [recovery(Side::Inner)?, recovery(Side::Outer)?],
+            rings: Side::try_both(recovery)?,
             n_balls: model.geometry.n_balls,
             bodies: body_recoveries(model, kind)?,
         })
@@ -137,7 +137,7 @@ impl RingStress {
                 }
             });
             let recovery = self.rings[side.index()].as_ref().filter(|_| kept.stress);
-            let Some(Source::Shared(shared)) = recovery.map(|r| &r.source) else {
+            let Some(RingRecovery::Shared(shared)) = recovery.map(|r| &r.source) else {
                 continue;
             };
             let own = laps.time(STRESS, || shared.recover(&field.strained));
@@ -155,8 +155,8 @@ impl RingStress {
     /// Stress of a ring with its near field, Pa, in its own frame.
     fn stress(&self, recovery: &Recovery, ring: &ShownRing) -> Vec<[f64; 6]> {
         let mut stress = match &ring.basis {
-            Basis::Displacement(field) => recovery.source.stress(field),
-            Basis::Stress(stress) => stress.clone(),
+            StressBasis::Displacement(field) => recovery.source.stress(field),
+            StressBasis::Stress(stress) => stress.clone(),
         };
         if let Some(own) = &ring.own_stress {
             add(
@@ -290,20 +290,20 @@ impl Recovery {
                     StressPlaces::Nodes
                 };
                 let shared = SharedStress::new(ring, side, sectors, places).map_err(Failure::solving)?;
-                Source::Shared(Box::new(shared))
+                RingRecovery::Shared(Box::new(shared))
             }
             _ if !is_root => return Ok(None),
-            _ if at_points => Source::Points(Box::new(
+            _ if at_points => RingRecovery::Points(Box::new(
                 PointStress::new(ring, side, backend).map_err(Failure::solving)?,
             )),
-            _ => Source::Nodes(NodalStress::new(ring, side, backend).map_err(Failure::solving)?),
+            _ => RingRecovery::Nodes(NodalStress::new(ring, side, backend).map_err(Failure::solving)?),
         };
         let points = match &source {
             _ if scene.stress.near_field_reach.is_none() => None,
-            Source::Nodes(_) => Some(ring.mesh.nodes.to_vec()),
-            Source::Points(stress) => Some(stress.point_positions()),
-            Source::Shared(shared) if at_points => shared.point_positions(),
-            Source::Shared(_) => {
+            RingRecovery::Nodes(_) => Some(ring.mesh.nodes.to_vec()),
+            RingRecovery::Points(stress) => Some(stress.point_positions()),
+            RingRecovery::Shared(shared) if at_points => shared.point_positions(),
+            RingRecovery::Shared(_) => {
                 let places = ring.places(side, backend).map_err(Failure::solving)?;
                 places.to_root().map(|places| places.to_vec())
             }
@@ -321,13 +321,13 @@ impl Recovery {
     }
 }
 
-impl Source {
+impl RingRecovery {
     /// Stress from displacements, by this process alone, Pa.
     fn stress(&self, field: &[f64]) -> Vec<[f64; 6]> {
         match self {
-            Source::Points(stress) => stress.at_points(field),
-            Source::Nodes(nodal) => nodal.nodal(field),
-            Source::Shared(shared) => {
+            RingRecovery::Points(stress) => stress.at_points(field),
+            RingRecovery::Nodes(nodal) => nodal.nodal(field),
+            RingRecovery::Shared(shared) => {
                 let gathered = shared.gather(shared.recover(field));
                 gathered.expect("one process has all sectors")
             }
@@ -366,7 +366,7 @@ mod tests {
                 let elements = StressRecovery::new(mesh, &steel).unwrap();
                 Some(Recovery {
                     points_per_element: elements.points_per_element(),
-                    source: Source::Points(Box::new(PointStress::of_elements(elements))),
+                    source: RingRecovery::Points(Box::new(PointStress::of_elements(elements))),
                     near_field: None,
                 })
             }),
@@ -377,7 +377,7 @@ mod tests {
         let quarter = std::f64::consts::FRAC_PI_2;
         let shown = |field: Vec<f64>, angle: f64| {
             Some(ShownRing {
-                basis: Basis::Displacement(field),
+                basis: StressBasis::Displacement(field),
                 own_stress: None,
                 turn: Turn::new(angle),
                 patches: Vec::new(),

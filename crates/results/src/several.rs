@@ -16,10 +16,11 @@ use scene::{Analysis, SeveralScene};
 use serde::Serialize;
 use timer::Laps;
 
-use crate::cut::Cut;
+use crate::cut::TableCut;
 use crate::modes::FrequenciesSummary;
 use crate::summary::{peak_memory, print_peak, print_seconds, print_warnings, write_summary};
 use crate::tables::{append, ball_cells, ball_columns, create, head, number, place_of};
+use crate::tilt::AcrossShaft;
 
 /// Balls of all bearings.
 pub const BALLS_TABLE: &str = "balls.csv";
@@ -88,19 +89,19 @@ impl SeveralTables {
     }
 
     /// Looks where the files of an earlier run are to be cut to go on after its step `last`; on rank 0.
-    pub fn cuts(dir: &Path, first: &ListState, last: u64) -> anyhow::Result<Vec<Cut>> {
+    pub fn cuts(dir: &Path, first: &ListState, last: u64) -> anyhow::Result<Vec<TableCut>> {
         if !Communicator::world().is_root() {
             return Ok(Vec::new());
         }
         let cuts = heads(None, &first.energies).into_iter();
-        cuts.map(|(name, columns)| Cut::find(dir, name, &columns.join(","), last))
+        cuts.map(|(name, columns)| TableCut::find(dir, name, &columns.join(","), last))
             .collect()
     }
 
     /// Opens the files of an earlier run at [`SeveralTables::cuts`]. Rows after the cuts are moved into the folder that
     /// `aside` makes.
     pub fn resume(
-        cuts: &[Cut],
+        cuts: &[TableCut],
         aside: &mut dyn FnMut() -> anyhow::Result<PathBuf>,
     ) -> anyhow::Result<SeveralTables> {
         if !Communicator::world().is_root() {
@@ -325,7 +326,7 @@ struct ShaftOfSeveral {
     /// Ends of the line, by position.
     position_m: Vec<f64>,
     displacement_m: Vec<[f64; 3]>,
-    rotation_rad: Vec<[f64; 2]>,
+    rotation_rad: Vec<AcrossShaft>,
 }
 
 #[derive(Debug, Serialize)]
@@ -336,9 +337,9 @@ struct BearingSummary {
     orientation: &'static str,
     position_m: f64,
     displacement_m: [f64; 3],
-    rotation_rad: [f64; 2],
+    rotation_rad: AcrossShaft,
     force_on_shaft_n: [f64; 3],
-    moment_on_shaft_n_m: [f64; 2],
+    moment_on_shaft_n_m: AcrossShaft,
     largest_ball_force_n: f64,
     loaded_balls: usize,
     balls: usize,
@@ -358,6 +359,15 @@ pub struct SeveralFindings {
     pub laps: Laps,
 }
 
+/// Displacement and rotation, or force and moment, of a point of the shaft.
+fn split([x, y, z, about_x, about_y]: [f64; N_SHAFT]) -> ([f64; 3], AcrossShaft) {
+    let across = AcrossShaft {
+        x: about_x,
+        y: about_y,
+    };
+    ([x, y, z], across)
+}
+
 impl SeveralSummary {
     /// Of the last solution of a run.
     pub fn new(
@@ -366,7 +376,6 @@ impl SeveralSummary {
         last: &ListState,
         findings: SeveralFindings,
     ) -> SeveralSummary {
-        let split = |v: [f64; N_SHAFT]| ([v[0], v[1], v[2]], [v[3], v[4]]);
         let bearing = |(number, mounted): (usize, &scene::BearingOnShaft)| {
             let state = &last.bearings[number];
             let (displacement_m, rotation_rad) = split(state.displacement);
@@ -398,6 +407,7 @@ impl SeveralSummary {
             version: env!("CARGO_PKG_VERSION"),
             analysis: match scene.analysis {
                 Analysis::Sweep(_) => "sweep",
+                Analysis::QuasiStatic(_) => "quasi_static",
                 Analysis::Dynamic(_) => "dynamic",
                 Analysis::Modes(_) => "modes",
                 _ => "static",

@@ -11,7 +11,7 @@ use contact::Side;
 use dynamics::motion::RingState;
 use dynamics::motion::{
     BodyState, CageLedger, CageState, ContactTraction, FreeState, FrictionLedger, Ledger, MotionState,
-    RingCourse, RingShape, StateShape,
+    PatchPlace, RingCourse, RingShape, StateShape,
 };
 
 /// Arrays by name.
@@ -93,7 +93,9 @@ fn exchange(state: &mut MotionState, shape: &StateShape, port: &mut Port<'_>) ->
     port.list("angles", angles, n_sites)?;
     port.list("approaches", approaches, n_sites)?;
     for (part, places) in places.iter_mut().enumerate() {
-        port.rows(&format!("places_{part}"), places, n_sites)?;
+        let mut rows = places.iter().map(PatchPlace::to_row).collect();
+        port.rows(&format!("places_{part}"), &mut rows, n_sites)?;
+        *places = rows.into_iter().map(PatchPlace::from_row).collect();
     }
     if shape.has_free_balls {
         exchange_free(free.get_or_insert_default(), shape, port)?;

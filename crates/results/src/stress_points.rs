@@ -80,7 +80,7 @@ impl StressPoints {
         };
         Ok(StressPoints {
             lines: lines.to_vec(),
-            rings: [on_ring(Side::Inner)?, on_ring(Side::Outer)?],
+            rings: Side::try_both(on_ring)?,
         })
     }
 

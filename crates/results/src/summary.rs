@@ -22,6 +22,7 @@ use super::seat::{SeatSummaries, SeatSummary};
 use super::snapshot::Snapshot;
 use super::subsurface::{self, ContactSubsurface};
 use super::whole;
+use crate::tilt::AcrossShaft;
 
 /// Start of the keys of `timing_s` that are effects.
 const EFFECT_TIMING: &str = "effect_";
@@ -119,7 +120,7 @@ pub struct ShaftSummary {
     #[serde(skip_serializing_if = "Option::is_none")]
     reaction_force_n: Option<[f64; 3]>,
     #[serde(skip_serializing_if = "Option::is_none")]
-    reaction_moment_n_m: Option<[f64; 2]>,
+    reaction_moment_n_m: Option<AcrossShaft>,
     /// Displacement of the outer ring's seat along z, m; absent where it does not slide.
     #[serde(skip_serializing_if = "Option::is_none")]
     outer_seat_z_m: Option<f64>,
@@ -171,7 +172,7 @@ impl ShaftSummary {
             displacement_m: [x, y, z],
             rotation_rad: [tilt_x, tilt_y, 0.0],
             reaction_force_n: snapshot.reaction.map(|r| [r[0], r[1], r[2]]),
-            reaction_moment_n_m: snapshot.reaction.map(|r| [r[3], r[4]]),
+            reaction_moment_n_m: snapshot.reaction.map(|r| AcrossShaft { x: r[3], y: r[4] }),
             outer_seat_z_m: snapshot.seat,
         }
     }

@@ -18,14 +18,14 @@ use crate::about::identity;
 use crate::failure::{Failure, agree};
 use crate::fields;
 use crate::memory::require_memory;
-use crate::probes::Probes;
+use crate::probes::PlacedProbes;
 use crate::region::Region;
 
 /// What only whole meshes tell of a run.
 #[derive(Default)]
 pub struct Survey {
     /// The probes of the scene, if it has some; where ranks share rings, on rank 0 only.
-    pub probes: Option<Probes>,
+    pub probes: Option<PlacedProbes>,
     /// What is most likely a slip in the scene; where ranks share rings, on rank 0 only.
     pub doubts: Vec<String>,
     /// The region in which fields are kept, if the scene has one; where ranks share rings, on rank 0 only.
@@ -76,7 +76,7 @@ fn whole(
     let (model, tags) = build_model(point)?;
     let doubts = doubts(point, &model);
     say_doubts(&doubts);
-    let probes = Probes::new(scene, &model, &tags)?;
+    let probes = PlacedProbes::new(scene, &model, &tags)?;
     let region = Region::new(scene, &model)?;
     test(&model)?;
     require_memory(&scene.analysis, &model)?;
@@ -127,7 +127,7 @@ fn build_shared(
         comm,
     };
     let mut rings = [None, None];
-    for (side, body) in [(Side::Inner, &point.inner.body), (Side::Outer, &point.outer.body)] {
+    for (side, body) in Side::BOTH.into_iter().zip([&point.inner.body, &point.outer.body]) {
         if body.is_none() {
             continue;
         }

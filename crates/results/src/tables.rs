@@ -8,7 +8,7 @@ use checkpoint::{Companion, GrowingFile, Stamps};
 use contact::Side;
 use dynamics::balls::{BallResult, ContactResult};
 
-use super::cut::Cut;
+use super::cut::TableCut;
 use super::film::FilmLaw;
 use super::free_columns::{
     FREE_BALL_COLUMNS, FRICTION_COLUMNS, POCKET_COLUMNS, TRACTION_COLUMNS, cage_cells, cage_columns,
@@ -91,17 +91,17 @@ impl Tables {
         first: &Snapshot,
         own: &OwnColumns,
         (last, stamps): (u64, Option<&Stamps>),
-    ) -> anyhow::Result<Vec<Cut>> {
+    ) -> anyhow::Result<Vec<TableCut>> {
         let [balls, shaft, energy] = columns(None, first, own);
         let find = |name: &str, columns: &[String]| {
             let header = columns.join(",");
             let Some(stamps) = stamps else {
-                return Cut::find(dir, name, &header, last);
+                return TableCut::find(dir, name, &header, last);
             };
             let stamp = stamps.get(name).copied();
             let stamp =
                 stamp.ok_or_else(|| anyhow!("step {last} does not tell of {name}, which this scene has"))?;
-            Cut::at_stamp(dir, name, &header, (last, stamp))
+            TableCut::at_stamp(dir, name, &header, (last, stamp))
         };
         let mut cuts = vec![find(BALLS, &balls)?, find(SHAFT, &shaft)?, find(ENERGY, &energy)?];
         let cage = cage_columns(first);
@@ -116,12 +116,12 @@ impl Tables {
     /// Opens the files of an earlier run at [`Tables::cuts`]. Rows after the cuts are moved into the folder that
     /// `aside` makes.
     pub fn resume(
-        cuts: &[Cut],
+        cuts: &[TableCut],
         first: &Snapshot,
         own: &OwnColumns,
         aside: &mut dyn FnMut() -> anyhow::Result<PathBuf>,
     ) -> anyhow::Result<Tables> {
-        let mut open = |cut: &Cut| Ok::<_, anyhow::Error>(csv::Writer::from_writer(cut.make(aside)?));
+        let mut open = |cut: &TableCut| Ok::<_, anyhow::Error>(csv::Writer::from_writer(cut.make(aside)?));
         let [balls, shaft, energy] = [open(&cuts[0])?, open(&cuts[1])?, open(&cuts[2])?];
         let mut rest = cuts[3..].iter();
         let mut next = |columns: &Option<Vec<String>>| {

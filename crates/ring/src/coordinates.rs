@@ -12,7 +12,7 @@ use crate::sparse::SparseLoad;
 
 /// What one nodal dof is made of.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Source {
+enum DofSource {
     /// A free dof: its index.
     Free(usize),
     /// A held node, its place among them: rigid motion with the shaft.
@@ -110,15 +110,15 @@ impl Coordinates {
     /// Number of a node among the free ones; None when it is held.
     pub fn free_node(&self, node: usize) -> Option<usize> {
         match self.source(3 * node) {
-            Source::Free(i) => Some(i / 3),
-            Source::Held(_) => None,
+            DofSource::Free(i) => Some(i / 3),
+            DofSource::Held(_) => None,
         }
     }
 
-    fn source(&self, dof: usize) -> Source {
+    fn source(&self, dof: usize) -> DofSource {
         match self.sources[dof].checked_sub(HELD) {
-            Some(place) => Source::Held(place as usize),
-            None => Source::Free(self.sources[dof] as usize),
+            Some(place) => DofSource::Held(place as usize),
+            None => DofSource::Free(self.sources[dof] as usize),
         }
     }
 
@@ -154,8 +154,8 @@ impl Coordinates {
     /// The coordinates that move a nodal dof and by how much, were its node at the position `x` (m): a row of T.
     pub fn terms(&self, dof: usize, x: [f64; 3]) -> Vec<(usize, f64)> {
         match self.source(dof) {
-            Source::Free(i) => vec![(i, 1.0)],
-            Source::Held(_) => {
+            DofSource::Free(i) => vec![(i, 1.0)],
+            DofSource::Held(_) => {
                 let arm = [x[0], x[1], x[2] - self.origin_z];
                 let term = |(k, &q): (usize, &usize)| (self.free.len() + k, rigid_lever(arm, dof % 3, q));
                 self.shaft.iter().enumerate().map(term).collect()
@@ -167,8 +167,8 @@ impl Coordinates {
     pub fn expand(&self, y: &[f64]) -> Vec<f64> {
         let q = &y[self.free.len()..];
         let value = |dof: usize| match self.source(dof) {
-            Source::Free(i) => y[i],
-            Source::Held(place) => self
+            DofSource::Free(i) => y[i],
+            DofSource::Held(place) => self
                 .shaft
                 .iter()
                 .zip(q)
@@ -183,7 +183,7 @@ impl Coordinates {
     /// # Panics
     /// When the node is free.
     pub fn held_displacement(&self, node: usize, q: &[f64]) -> [f64; 3] {
-        let Source::Held(place) = self.source(3 * node) else {
+        let DofSource::Held(place) = self.source(3 * node) else {
             panic!("node {node} is free")
         };
         [0, 1, 2].map(|component| {
@@ -198,13 +198,13 @@ impl Coordinates {
         let first = self.free.len();
         for (dof, f) in load.iter().enumerate() {
             match self.source(dof) {
-                Source::Free(i) => y[i] = *f,
-                Source::Held(place) if *f != 0.0 => {
+                DofSource::Free(i) => y[i] = *f,
+                DofSource::Held(place) if *f != 0.0 => {
                     for (k, &s) in self.shaft.iter().enumerate() {
                         y[first + k] += self.lever(place, dof % 3, s) * f;
                     }
                 }
-                Source::Held(_) => {}
+                DofSource::Held(_) => {}
             }
         }
         y
@@ -218,8 +218,8 @@ impl Coordinates {
             for (&node, coefficients) in weights.nodes.iter().zip(&weights.coefficients) {
                 for (component, &value) in coefficients[direction].iter().enumerate() {
                     match self.source(3 * node + component) {
-                        Source::Free(i) => load.push((i, value)),
-                        Source::Held(place) => {
+                        DofSource::Free(i) => load.push((i, value)),
+                        DofSource::Held(place) => {
                             for (sum, &q) in shaft.iter_mut().zip(&self.shaft) {
                                 *sum += self.lever(place, component, q) * value;
                             }
@@ -250,13 +250,13 @@ impl Coordinates {
         for (dof, row) in a.outer_iterator().enumerate() {
             let mut moved = vec![0.0; m];
             for (j, value) in row.iter() {
-                if let Source::Held(place) = self.source(j) {
+                if let DofSource::Held(place) = self.source(j) {
                     (0..m).for_each(|k| moved[k] += value * self.lever(place, j % 3, self.shaft[k]));
                 }
             }
             match self.source(dof) {
-                Source::Free(i) => border[m * i..m * (i + 1)].copy_from_slice(&moved),
-                Source::Held(place) => {
+                DofSource::Free(i) => border[m * i..m * (i + 1)].copy_from_slice(&moved),
+                DofSource::Held(place) => {
                     for k in 0..m {
                         let lever = self.lever(place, dof % 3, self.shaft[k]);
                         (0..m).for_each(|l| corner[m * k + l] += lever * moved[l]);

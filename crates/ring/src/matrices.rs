@@ -57,23 +57,25 @@ pub trait NodalMatrices: Send + Sync {
         ]
     }
 
-    /// Energies of a state, J, and what the next step has on its right-hand side but loads, `[n]`.
+    /// Energies of a state, J, and what the next step has on its right-hand side but loads, `[n]`. K w serves both.
     fn of_state(&self, coordinates: &Coordinates, state: &StateVectors) -> ([f64; 2], Vec<f64>) {
-        let mut elastic = state.damped.clone();
-        let terms = elastic.iter_mut().zip(state.displacement);
-        terms.for_each(|(c, w)| *c -= w);
-        let energies = self.energies(coordinates, state.velocity, &state.strained);
-        (
-            energies,
-            self.sum_of_products(coordinates, &state.inertial, &elastic),
-        )
+        let (v, w) = (state.velocity, &state.strained);
+        let stiff = self.stiffness_product(coordinates, w);
+        let energies = [
+            0.5 * dot(v, &self.mass_product(coordinates, v)),
+            0.5 * dot(w, &stiff),
+        ];
+        let mut side = self.mass_product(coordinates, &state.inertial);
+        side.iter_mut().zip(&stiff).for_each(|(side, k)| *side -= k);
+        if state.damped.iter().any(|&x| x != 0.0) {
+            add(&mut side, &self.stiffness_product(coordinates, &state.damped));
+        }
+        (energies, side)
     }
 }
 
 /// Vectors of a state that K and M meet at the end of a step and the begin of the next, coordinates.
 pub struct StateVectors<'a> {
-    /// w.
-    pub displacement: &'a [f64],
     /// v.
     pub velocity: &'a [f64],
     /// w less the rigid motion of the ring's partner, which K does not see.
@@ -174,22 +176,6 @@ impl NodalMatrices for SparseMatrices {
 
     fn nodal_mass_product(&self, field: &[f64]) -> Vec<f64> {
         node_product(&self.node_mass, field)
-    }
-
-    /// K w serves the energy and the next step.
-    fn of_state(&self, coordinates: &Coordinates, state: &StateVectors) -> ([f64; 2], Vec<f64>) {
-        let (v, w) = (state.velocity, &state.strained);
-        let stiff = product(&self.stiffness, w);
-        let energies = [
-            0.5 * dot(v, &self.mass_product(coordinates, v)),
-            0.5 * dot(w, &stiff),
-        ];
-        let mut side = self.mass_product(coordinates, &state.inertial);
-        side.iter_mut().zip(&stiff).for_each(|(side, k)| *side -= k);
-        if state.damped.iter().any(|&x| x != 0.0) {
-            add(&mut side, &product(&self.stiffness, &state.damped));
-        }
-        (energies, side)
     }
 }
 

@@ -4,7 +4,7 @@ use std::sync::{Arc, Mutex, OnceLock};
 
 use body::SeatTie;
 use comm::Communicator;
-use contact::Groove;
+use contact::{Groove, Side};
 use fem::{FemError, Material};
 use mesh::{
     Mesh, NearlyPeriodic, NotNearlyPeriodic, NotPeriodic, PERIODIC_TOLERANCE, Periodicity,
@@ -171,31 +171,37 @@ impl Backend {
         }
     }
 
-    /// Both of two independent pieces of work on the rings: at the same time, but one after the other where ranks share
-    /// a ring, as all ranks must meet in the same order.
-    pub fn both<A: Send, B: Send>(
+    /// Independent work on both rings, inner first: at the same time, but one after the other where ranks share a ring,
+    /// as all ranks must meet in the same order.
+    pub fn on_sides<T: Send>(self, of: impl Fn(Side) -> T + Sync) -> [T; 2] {
+        self.with_sides([(), ()], |(), side| of(side))
+    }
+
+    /// The same with a value for each ring.
+    pub fn with_sides<A: Send, T: Send>(
         self,
-        first: impl FnOnce() -> A + Send,
-        second: impl FnOnce() -> B + Send,
-    ) -> (A, B) {
+        [inner, outer]: [A; 2],
+        of: impl Fn(A, Side) -> T + Sync,
+    ) -> [T; 2] {
+        let [first, second] = Side::BOTH;
         match self {
-            _ if self.comm().size() > 1 => (first(), second()),
-            _ => rayon::join(first, second),
+            _ if self.comm().size() > 1 => [of(inner, first), of(outer, second)],
+            _ => rayon::join(|| of(inner, first), || of(outer, second)).into(),
         }
     }
 
     /// The same of work that may fail. Where ranks share a ring, none begins the second when the first has failed: the
     /// others might wait for other messages than those of the second.
-    pub fn try_both<A: Send, B: Send, E: Send>(
+    pub fn try_on_sides<T: Send, E: Send>(
         self,
-        first: impl FnOnce() -> Result<A, E> + Send,
-        second: impl FnOnce() -> Result<B, E> + Send,
-    ) -> Result<(A, B), E> {
+        of: impl Fn(Side) -> Result<T, E> + Sync,
+    ) -> Result<[T; 2], E> {
         match self {
-            _ if self.comm().size() > 1 => Ok((first()?, second()?)),
+            _ if self.comm().size() > 1 => Side::try_both(of),
             _ => {
-                let (first, second) = rayon::join(first, second);
-                Ok((first?, second?))
+                let [inner, outer] = Side::BOTH;
+                let (inner, outer) = rayon::join(|| of(inner), || of(outer));
+                Ok([inner?, outer?])
             }
         }
     }

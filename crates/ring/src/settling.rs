@@ -15,7 +15,7 @@ const FRAME_ROUND_OFF: f64 = 1e-13;
 
 /// Difference of two loads.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct Change {
+pub(crate) struct LoadChange {
     /// Sum of the squares of its coordinates.
     pub square: f64,
     /// Sum of the squares of the coordinates of the new load.
@@ -24,7 +24,7 @@ pub(crate) struct Change {
 
 /// How far the inertia is found.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Progress {
+enum InertiaProgress {
     /// It is not, after a round whose change was the number times that of the round before.
     Open(f64),
     /// The next change is expected to be small.
@@ -36,7 +36,7 @@ enum Progress {
 /// The rounds of one step.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct FrameRounds {
-    progress: Progress,
+    progress: InertiaProgress,
     /// Sum of the squares of the last change, N^2.
     last_change: Option<f64>,
     /// By how much a round is expected to contract.
@@ -51,8 +51,8 @@ impl FrameRounds {
         let contraction = turn.map_or(0.0, |turn| turn.speed.abs() * dt);
         FrameRounds {
             progress: match turn {
-                Some(_) => Progress::Open(contraction),
-                None => Progress::Settled,
+                Some(_) => InertiaProgress::Open(contraction),
+                None => InertiaProgress::Settled,
             },
             last_change: None,
             contraction,
@@ -62,46 +62,46 @@ impl FrameRounds {
 
     /// Whether a trial is to be made.
     pub fn is_open(&self) -> bool {
-        matches!(self.progress, Progress::Open(_))
+        matches!(self.progress, InertiaProgress::Open(_))
     }
 
     /// Whether the end of the step is to check the inertia.
     pub fn is_checked_at_end(&self) -> bool {
-        self.progress == Progress::Expected
+        self.progress == InertiaProgress::Expected
     }
 
     /// Notes that the inertia fits.
     pub fn close(&mut self) {
-        self.progress = Progress::Settled;
+        self.progress = InertiaProgress::Settled;
     }
 
     /// Goes on after a trial whose change was too large; `scale` is the largest force, N.
-    pub fn advance(&mut self, change: &Change, scale: f64) {
+    pub fn advance(&mut self, change: &LoadChange, scale: f64) {
         let ratio = match (self.last_change, self.progress) {
             (Some(before), _) => (change.square / before).sqrt(),
-            (None, Progress::Open(contraction)) => contraction,
+            (None, InertiaProgress::Open(contraction)) => contraction,
             (None, _) => self.contraction,
         };
         self.last_change = Some(change.square);
         self.progress = if self.most(change.square) * ratio <= self.limit(change, scale) {
-            Progress::Expected
+            InertiaProgress::Expected
         } else {
-            Progress::Open(ratio)
+            InertiaProgress::Open(ratio)
         };
     }
 
     /// Begins anew with another inertia.
     pub fn reopen(&mut self) {
-        self.progress = Progress::Open(self.contraction);
+        self.progress = InertiaProgress::Open(self.contraction);
     }
 
     /// Whether the inertia differs little enough from the one that acts.
-    pub fn is_settled(&self, change: &Change, scale: f64) -> bool {
+    pub fn is_settled(&self, change: &LoadChange, scale: f64) -> bool {
         self.most(change.square) <= self.limit(change, scale)
     }
 
     /// Change at which the inertia counts as settled, N.
-    fn limit(&self, change: &Change, scale: f64) -> f64 {
+    fn limit(&self, change: &LoadChange, scale: f64) -> f64 {
         (FRAME_TOLERANCE * scale).max(FRAME_ROUND_OFF * self.most(change.new_square))
     }
 

@@ -13,7 +13,7 @@ use crate::division::NodePlaces;
 use crate::model::Hold;
 
 /// A hold, ready to apply.
-pub struct Support {
+pub struct AppliedHold {
     /// Dofs that stay in the factored matrix, ascending.
     pub free: Vec<usize>,
     mean: Option<MeanMotion>,
@@ -33,19 +33,19 @@ struct MeanMotion {
     inverse: Vec<f64>,
 }
 
-impl Support {
+impl AppliedHold {
     /// Hold of the surface with nodal area weights `weights` (node, m^2).
-    pub fn new(mesh: &Mesh, hold: Hold, weights: Vec<(usize, f64)>, places: NodePlaces) -> Support {
+    pub fn new(mesh: &Mesh, hold: Hold, weights: Vec<(usize, f64)>, places: NodePlaces) -> AppliedHold {
         match hold {
             Hold::Clamped => {
                 let mut held = vec![false; mesh.n_nodes()];
                 weights.iter().for_each(|&(node, _)| held[node] = true);
-                Support {
+                AppliedHold {
                     free: (0..mesh.n_dofs()).filter(|&d| !held[d / 3]).collect(),
                     mean: None,
                 }
             }
-            Hold::Free => Support {
+            Hold::Free => AppliedHold {
                 free: (0..mesh.n_dofs()).collect(),
                 mean: None,
             },
@@ -53,7 +53,7 @@ impl Support {
                 let mean = MeanMotion::new(places, weights);
                 let fixed = mean.determinate_dofs();
                 let free = (0..mesh.n_dofs()).filter(|d| !fixed.contains(d)).collect();
-                Support {
+                AppliedHold {
                     free,
                     mean: Some(mean),
                 }
@@ -62,17 +62,17 @@ impl Support {
     }
 
     /// The same for a factor that needs no dofs fixed in a mean motion: all stay, and loads must be balanced.
-    pub fn unfixed(mesh: &Mesh, hold: Hold, weights: Vec<(usize, f64)>, places: NodePlaces) -> Support {
+    pub fn unfixed(mesh: &Mesh, hold: Hold, weights: Vec<(usize, f64)>, places: NodePlaces) -> AppliedHold {
         match hold {
-            Hold::Clamped | Hold::Free => Support::new(mesh, hold, weights, places),
-            Hold::MeanMotion => Support {
+            Hold::Clamped | Hold::Free => AppliedHold::new(mesh, hold, weights, places),
+            Hold::MeanMotion => AppliedHold {
                 free: (0..mesh.n_dofs()).collect(),
                 mean: Some(MeanMotion::new(places, weights)),
             },
         }
     }
 
-    /// Nodes whose displacements [`Support::remove_rigid`] looks at.
+    /// Nodes whose displacements [`AppliedHold::remove_rigid`] looks at.
     pub fn measured_nodes(&self) -> impl Iterator<Item = usize> + '_ {
         self.mean
             .iter()

@@ -2,7 +2,6 @@
 
 use std::sync::Arc;
 
-use comm::Communicator;
 use contact::hertz::Elastic;
 use contact::{BearingGeometry, Groove, HertzContact, LeastSize, Side, SphereCompliance};
 use dynamics::RACEWAY_GROUP;
@@ -10,9 +9,7 @@ use dynamics::effects::Setting;
 use dynamics::kinematics::Rolling;
 use dynamics::model::{ShaftInertia, elastic};
 use dynamics::mounting::{Mounting, Unmounted};
-use dynamics::{
-    Backend, ContactMode, ContactSettings, Hold, Model, RingModel, Sectors, ShaftDof, Surfaces, Tolerances,
-};
+use dynamics::{ContactSettings, Hold, Model, RingModel, ShaftDof, Surfaces, Tolerances};
 use fem::Material;
 use mesh::{Coverage, Cylinder, Mesh, Torus};
 
@@ -23,7 +20,7 @@ use crate::marks::require_raceway_under_marks;
 use crate::resolution::require_resolvable;
 use crate::section_record::{require_fresh, with_command};
 use crate::settings::speeds;
-use crate::surfaces::surfaces;
+use crate::surfaces::{shoulders, surfaces};
 use crate::tables::{self, FlexibleRing, Scene};
 
 /// Least semi-axis of a patch on quadratic elements in the rolling direction, ball diameters. A patch of one such
@@ -45,10 +42,8 @@ pub fn build_model(scene: &Scene) -> Result<(Model, NodeTags), BuildError> {
     let geometry = geometry(scene);
     geometry.validate()?;
     require_resolvable(scene, &geometry)?;
-    let rings = rayon::join(
-        || ring(scene, &geometry, Side::Inner),
-        || ring(scene, &geometry, Side::Outer),
-    );
+    let [inner, outer] = Side::BOTH;
+    let rings = rayon::join(|| ring(scene, &geometry, inner), || ring(scene, &geometry, outer));
     let (inner, inner_tags) = rings.0?.unzip();
     let (outer, outer_tags) = rings.1?.unzip();
     for (side, ring) in Side::BOTH.into_iter().zip([&inner, &outer]) {
@@ -84,16 +79,18 @@ pub fn model_with_rings(scene: &Scene, rings: [Option<Arc<RingModel>>; 2]) -> Re
     let mounting = mounting(scene, &geometry, &rings)?;
     let (shaft, ring) = (&scene.shaft, scene.inner.inertia);
     let contact = contact_settings(scene, &geometry, &rings);
+    let shoulders = shoulders(scene, &geometry, &rings);
     let dofs = [shaft.x, shaft.y, shaft.z, shaft.tilt_x, shaft.tilt_y].map(|motion| match motion {
-        tables::Motion::Free => ShaftDof::Free,
-        tables::Motion::Locked => ShaftDof::Prescribed(0.0),
-        tables::Motion::Prescribed(value) => ShaftDof::Prescribed(value),
+        tables::ShaftMotion::Free => ShaftDof::Free,
+        tables::ShaftMotion::Locked => ShaftDof::Prescribed(0.0),
+        tables::ShaftMotion::Prescribed(value) => ShaftDof::Prescribed(value),
     });
     let mut model = Model {
         geometry,
         hertz,
         sphere,
         surfaces: Surfaces::default(),
+        shoulders,
         rings,
         other_seats: [None, None],
         weighs_carried: true,
@@ -111,7 +108,7 @@ pub fn model_with_rings(scene: &Scene, rings: [Option<Arc<RingModel>>; 2]) -> Re
         cage: scene.cage.clone(),
         contact,
         effects,
-        backend: backend(scene),
+        backend: scene.solver.of_rings(),
         tolerances: Tolerances {
             force: scene.solver.tolerance,
             max_rounds: scene.solver.max_iterations,
@@ -153,11 +150,7 @@ fn contact_settings(
     };
     let patch_length = scene.contact.patch_length.unwrap_or(least_length);
     ContactSettings {
-        mode: match scene.contact.mode {
-            tables::ContactMode::Patch => ContactMode::Patch,
-            tables::ContactMode::Facet => ContactMode::Facet,
-            tables::ContactMode::Rigid => ContactMode::Rigid,
-        },
+        mode: scene.contact.mode,
         least_patch: LeastSize {
             spacings: scene.contact.patch_elements,
             rolling: patch_length,
@@ -188,22 +181,9 @@ fn mounting(
         expansion: [materials.rings, materials.balls].map(|m| m.expansion.unwrap_or(0.0)),
         yield_strength: materials.rings.yield_strength,
         speeds: Side::BOTH.map(largest),
-        backend: backend(scene),
+        backend: scene.solver.of_rings(),
     };
     Ok(Mounting::new(&bearing, &scene.effects.conditions())?)
-}
-
-/// Linear solver of the rings.
-fn backend(scene: &Scene) -> Backend {
-    match scene.solver.backend {
-        tables::Backend::Auto => Backend::Auto,
-        tables::Backend::Cyclic => Backend::Cyclic,
-        tables::Backend::Sparse => Backend::Sparse,
-        tables::Backend::Sector => Backend::Sector(Sectors {
-            n_sectors: scene.solver.sectors,
-            comm: Communicator::world(),
-        }),
-    }
 }
 
 /// Dimensions of the bearing, for the contacts.
@@ -221,7 +201,7 @@ pub fn geometry(scene: &Scene) -> BearingGeometry {
 }
 
 /// A material, checked.
-pub fn material(m: &tables::Material) -> Result<Material, BuildError> {
+pub fn material(m: &tables::MaterialProperties) -> Result<Material, BuildError> {
     Ok(Material::new(m.young_modulus, m.poisson_ratio, m.density)?)
 }
 
@@ -336,10 +316,10 @@ pub fn ring_of(scene: &Scene, side: Side, material: Material, mesh: Mesh) -> Opt
 /// The ring of one side in the scene, the facet group that is held, and the diameter by which the unit of its mesh is
 /// checked, m.
 fn of_side(scene: &Scene, side: Side) -> (&tables::Ring, &'static str, f64) {
-    match side {
-        Side::Inner => (&scene.inner, "bore", scene.bearing.inner_raceway_diameter),
-        Side::Outer => (&scene.outer, "seat", scene.bearing.outside_diameter),
-    }
+    side.choose(
+        (&scene.inner, "bore", scene.bearing.inner_raceway_diameter),
+        (&scene.outer, "seat", scene.bearing.outside_diameter),
+    )
 }
 
 /// The surface of a groove.

@@ -17,7 +17,7 @@ use crate::build::{coverages, torus};
 use crate::resolution::unresolved;
 use crate::section_record::unrecorded;
 use crate::surfaces::track_radius;
-use crate::tables::{Material, Scene, unusual_stiffnesses};
+use crate::tables::{MaterialProperties, Scene, unusual_stiffnesses};
 
 /// Young's modulus of what rings and balls are made of, Pa: from soft plastics to diamond.
 const MODULI: RangeInclusive<f64> = 4e8..=1.3e12;
@@ -117,7 +117,7 @@ fn say_parts(ring: &RingModel, path: &str, lines: &mut Vec<String>) {
     }
 }
 
-fn doubt_material(table: &str, material: &Material, lines: &mut Vec<String>) {
+fn doubt_material(table: &str, material: &MaterialProperties, lines: &mut Vec<String>) {
     if !MODULI.contains(&material.young_modulus) {
         lines.push(format!(
             "{table}.young_modulus is {}; rings and balls have 0.4 GPa (plastics) to 1300 GPa (diamond), steel 207 \
@@ -136,10 +136,10 @@ fn doubt_material(table: &str, material: &Material, lines: &mut Vec<String>) {
 
 /// Compares the held surface and the width of a mesh with the scene.
 fn doubt_size(scene: &Scene, side: Side, ring: &RingModel, path: &str, lines: &mut Vec<String>) {
-    let (key, stated) = match side {
-        Side::Inner => ("bearing.bore_diameter", scene.bearing.bore_diameter),
-        Side::Outer => ("bearing.outside_diameter", scene.bearing.outside_diameter),
-    };
+    let (key, stated) = side.choose(
+        ("bearing.bore_diameter", scene.bearing.bore_diameter),
+        ("bearing.outside_diameter", scene.bearing.outside_diameter),
+    );
     let (mesh, group) = (&ring.mesh, ring.held_group);
     let mut say = |what: &str, key: &str, found: f64, stated: f64| {
         let [found, stated] = [found, stated].map(Quantity::<LENGTH>::about);

@@ -13,7 +13,9 @@ use mesh::{ElementKind, Gmsh, Mesh, Overwrite, RingSection};
 
 use crate::error::BuildError;
 use crate::section_record::{disagreements, record};
-use crate::tables::{AnyScene, FlexibleRing, MeshFiles, Ring, RingName, Scene, Section, SectionElement};
+use crate::tables::{
+    AnyScene, FlexibleRing, MeshFiles, MeshedSection, Ring, RingName, Scene, SectionElement,
+};
 
 /// Length unit of the files that Gmsh reads and writes, m.
 const GMSH_UNIT: f64 = 1e-3;
@@ -63,7 +65,7 @@ struct Job<'a> {
     scene: &'a Scene,
     side: RingName,
     body: &'a FlexibleRing,
-    section: &'a Section,
+    section: &'a MeshedSection,
 }
 
 impl Job<'_> {
@@ -140,7 +142,7 @@ fn job<'a>(scene: &'a Scene, side: RingName, ring: &'a Ring) -> Option<Job<'a>> 
 fn build_ring(
     scene: &Scene,
     side: RingName,
-    (body, section): (&FlexibleRing, &Section),
+    (body, section): (&FlexibleRing, &MeshedSection),
     gmsh: Gmsh<'_>,
 ) -> Result<Mesh, BuildError> {
     let measures = section.measures(&scene.bearing, side);
@@ -168,7 +170,7 @@ fn build_ring(
 fn revolved(
     measures: &RingSection,
     geo: &Path,
-    (body, section): (&FlexibleRing, &Section),
+    (body, section): (&FlexibleRing, &MeshedSection),
     gmsh: Gmsh<'_>,
     kind: ElementKind,
 ) -> Result<Mesh, BuildError> {

@@ -8,13 +8,13 @@ use contact::Side;
 use mesh::MeshError;
 
 use crate::error::BuildError;
-use crate::tables::{FlexibleRing, Scene, Section, SectionElement};
+use crate::tables::{FlexibleRing, MeshedSection, Scene, SectionElement};
 
 /// What stands between two values.
 const SEPARATOR: &str = "; ";
 
 /// The record of the mesh of one ring.
-pub fn record(scene: &Scene, side: Side, body: &FlexibleRing, section: &Section) -> String {
+pub fn record(scene: &Scene, side: Side, body: &FlexibleRing, section: &MeshedSection) -> String {
     let entries = entries(scene, side, body, section).into_iter();
     let entries: Vec<String> = entries.map(|(key, value)| format!("{key} = {value}")).collect();
     entries.join(SEPARATOR)
@@ -26,7 +26,7 @@ pub fn require_fresh(
     scene: &Scene,
     side: Side,
     body: &FlexibleRing,
-    section: Option<&Section>,
+    section: Option<&MeshedSection>,
 ) -> Result<(), BuildError> {
     let Some(section) = section else { return Ok(()) };
     let Some(found) = mesh::read_record(&body.mesh)? else {
@@ -50,7 +50,7 @@ pub fn unrecorded(
     scene: &Scene,
     side: Side,
     body: &FlexibleRing,
-    section: Option<&Section>,
+    section: Option<&MeshedSection>,
 ) -> Option<String> {
     section?;
     // A file that cannot be read was refused before.
@@ -74,7 +74,7 @@ pub fn build_command(scene: &Scene) -> String {
 }
 
 /// A misfit of groove and mesh with the command that builds the mesh, where the scene describes it.
-pub fn with_command(mut error: MeshError, scene: &Scene, section: Option<&Section>) -> MeshError {
+pub fn with_command(mut error: MeshError, scene: &Scene, section: Option<&MeshedSection>) -> MeshError {
     if let (MeshError::OffTorus { advice, .. }, Some(_)) = (&mut error, section) {
         let command = build_command(scene);
         *advice = format!("{advice}, or build the mesh of this scene: {command}, which needs Gmsh").into();
@@ -83,7 +83,7 @@ pub fn with_command(mut error: MeshError, scene: &Scene, section: Option<&Sectio
 }
 
 /// Keys of the scene and their values.
-fn entries(scene: &Scene, side: Side, body: &FlexibleRing, section: &Section) -> Vec<(String, String)> {
+fn entries(scene: &Scene, side: Side, body: &FlexibleRing, section: &MeshedSection) -> Vec<(String, String)> {
     let (b, ring) = (&scene.bearing, side.name());
     let held = [
         ("bore_diameter", b.bore_diameter),

@@ -1,12 +1,11 @@
 //! What a scene says about a motion, as the solver wants it.
 
 use dynamics::effects::Context;
-use dynamics::interactions::discrete_gradient::ContactScheme;
 use dynamics::kinematics::RingSpeeds;
 use dynamics::motion::{Integrator, Ladder, MotionSettings};
 use input::Clock;
 
-use crate::tables::{self, Analysis, Dynamic, IntegratorChoice, Scene};
+use crate::tables::{Analysis, Dynamic, IntegratorChoice, Scene};
 
 fn integrator_of(dynamic: &Dynamic) -> Integrator {
     match dynamic.integrator {
@@ -27,10 +26,7 @@ pub fn settings(scene: &Scene, dynamic: &Dynamic) -> MotionSettings {
             tolerance: dynamic.adaptive,
         },
         integrator,
-        scheme: match dynamic.contact {
-            tables::ContactScheme::DiscreteGradient => ContactScheme::DiscreteGradient,
-            tables::ContactScheme::Pointwise => ContactScheme::Pointwise,
-        },
+        scheme: dynamic.contact,
         speeds: speeds(scene),
         slip: scene.effects.slip(),
         contact_damping: scene.effects.contact_damping(),

@@ -8,7 +8,10 @@ use dynamics::effects::{Loads, Now, Setting};
 use crate::build::{NodeTags, build_model, model_with_rings};
 use crate::error::BuildError;
 use crate::housing::{Rings, tie_together};
-use crate::tables::{Motion, ON_SHAFT, RigidShaft, Scene, SeveralScene, ShaftKind};
+use crate::tables::{ON_SHAFT, RigidShaft, Scene, SeveralScene, ShaftKind, ShaftMotion};
+
+/// The effect that has a place of its own on the shaft.
+const UNBALANCE: &str = "unbalance";
 
 /// The bearings of a scene on their shaft, and the numbers of the nodes of each in the mesh files. Reads the meshes of
 /// each type once.
@@ -57,7 +60,7 @@ pub fn assembly_with_rings(scene: &SeveralScene, rings: Vec<Rings>) -> Result<As
         });
     }
     let shaft = shaft(scene)?;
-    let load = loads(scene, (&shaft, &bearings), 0.0)?;
+    let load = loads(scene, (&shaft, &bearings), &Now::default())?;
     Ok(Assembly {
         bearings,
         shaft,
@@ -93,9 +96,14 @@ fn shaft(scene: &SeveralScene) -> Result<ShaftBody, AssemblyError> {
             let bearings = scene.bearings.iter().map(|b| b.position);
             let loads = shaft.loads.iter().map(|l| l.position);
             let masses = shaft.masses.iter().map(|m| m.position);
-            let has_load = ON_SHAFT.iter().any(|name| scene.effects.names().contains(name));
+            let effects = scene.effects.names();
+            let has_load = effects
+                .iter()
+                .any(|name| ON_SHAFT.contains(name) && *name != UNBALANCE);
             let load_point = has_load.then_some(shaft.load_point);
-            let stations: Vec<f64> = bearings.chain(loads).chain(masses).chain(load_point).collect();
+            let unbalance = scene.effects.unbalance.iter().map(|u| u.position());
+            let places = bearings.chain(loads).chain(masses).chain(load_point);
+            let stations: Vec<f64> = places.chain(unbalance).collect();
             ShaftBody::beam(beam, &stations)?
         }
     };
@@ -111,19 +119,19 @@ fn rigid_shaft(rigid: &RigidShaft) -> ShaftBody {
         polar: rigid.polar,
     };
     let held = rigid.motions.map(|motion| match motion {
-        Motion::Free => None,
-        Motion::Locked => Some(0.0),
-        Motion::Prescribed(value) => Some(value),
+        ShaftMotion::Free => None,
+        ShaftMotion::Locked => Some(0.0),
+        ShaftMotion::Prescribed(value) => Some(value),
     });
     ShaftBody::rigid(inertia, held)
 }
 
-/// Loads on the shaft's dofs at a time, s: those along it, those of effects at the load point, its weight, and that of
-/// bodies on it.
+/// Loads on the shaft's dofs at an instant, or their means over an interval about it: those along the shaft, those of
+/// effects at the load point, the pull of an unbalance where it is, its weight, and that of bodies on it.
 pub fn loads(
     scene: &SeveralScene,
     (shaft, bearings): (&ShaftBody, &[MountedBearing]),
-    time: f64,
+    now: &Now<'_>,
 ) -> Result<Vec<f64>, BuildError> {
     // The effects ask for a bearing: any is right.
     let model = &bearings[0].model;
@@ -132,26 +140,32 @@ pub fn loads(
         let ([x, y, z], [about_x, about_y]) = (load.force, load.moment);
         shaft.add_load(load.position, [x, y, z, about_x, about_y], &mut sum);
     }
-    let none = [None, None];
+    let rigid = [None, None];
     let found = scene.effects.loads(Setting {
         speeds: &scene.speed.clone().unwrap_or_default(),
         slip: scene.effects.slip(),
         ball_speeds: scene.bearings[0].scene.ball_speeds,
-        rings: &none,
+        rings: &rigid,
         lubricant: None,
     })?;
-    let mut of_effects = Loads::none(model.geometry.n_balls);
+    let none = || Loads::none(model.geometry.n_balls);
+    let mut of_effects = none();
     for effect in found.iter().filter(|effect| ON_SHAFT.contains(&effect.name())) {
+        if effect.name() == UNBALANCE {
+            let (mut of_unbalance, unbalance) = (none(), scene.effects.unbalance.as_ref());
+            effect.add_loads(model, now, &mut of_unbalance)?;
+            // Its moment about the origin follows from its place on the shaft.
+            let [x, y, ..] = of_unbalance.shaft;
+            let position = unbalance.map_or(0.0, |unbalance| unbalance.position());
+            shaft.add_load(position, [x, y, 0.0, 0.0, 0.0], &mut sum);
+            continue;
+        }
         // The load point of a bearing's model is its origin: forces have no lever.
-        let now = Now {
-            time,
-            ..Now::default()
-        };
-        effect.add_loads(model, &now, &mut of_effects)?;
+        effect.add_loads(model, now, &mut of_effects)?;
     }
     shaft.add_load(scene.shaft.load_point, of_effects.shaft, &mut sum);
     if let Some(gravity) = &scene.effects.gravity {
-        let g = gravity.acceleration_at(time);
+        let g = gravity.acceleration_at(now);
         match &scene.shaft.kind {
             ShaftKind::Beam(_) => {
                 let weight = shaft.weight(g);

@@ -449,7 +449,7 @@ mod tests {
     fn the_grooves_of_a_deep_groove_bearing_stand_opposite_each_other() {
         let scene = read(&named("6206"));
         let geometry = crate::build::geometry(&scene);
-        let crate::tables::Motion::Prescribed(z) = scene.shaft.z else {
+        let crate::tables::ShaftMotion::Prescribed(z) = scene.shaft.z else {
             panic!("{:?}", scene.shaft.z)
         };
         assert!((z + geometry.axial_offset()).abs() < 1e-9, "{z}");

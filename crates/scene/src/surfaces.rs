@@ -5,11 +5,12 @@ use std::sync::Arc;
 
 use contact::{BearingGeometry, HertzContact, Side, StripLaw, StripSurface};
 use dynamics::kinematics::BothRings;
+use dynamics::shoulders::Shoulders;
 use dynamics::{RACEWAY_GROUP, RingModel, Surfaces};
 
 use crate::error::BuildError;
 use crate::marks::marks;
-use crate::tables::Scene;
+use crate::tables::{self, Scene};
 use crate::worn_balls::{too_fine, worn_balls};
 
 /// The surfaces that a scene asks for; nothing where it does not.
@@ -60,7 +61,7 @@ fn strips_of(
         );
     }
     let ring = ring.filter(|_| !is_divided);
-    let shoulders = shoulders(scene, (geometry, side), ring);
+    let shoulders = groove_ends(scene, (geometry, side), ring);
     if shoulders.is_none() && scene.contact.edges {
         return refuse(format!(
             "contact.edges is true, but nothing says where the groove of the rigid {0} ring ends; expected \
@@ -101,8 +102,37 @@ pub fn track_radius(geometry: &BearingGeometry, side: Side) -> f64 {
     geometry.centre_radius(side) + side.sign() * out
 }
 
+/// What a scene tells of the shoulders of its bearing. Unequal shoulders of a ring say where it carries: a positive
+/// contact angle has the higher one at -z inside, at +z outside. Else a contact angle says that it carries on the side
+/// where its balls begin.
+pub fn shoulders(
+    scene: &Scene,
+    geometry: &BearingGeometry,
+    rings: &[Option<Arc<RingModel>>; 2],
+) -> Shoulders {
+    let unequal = |table: &tables::Ring| {
+        let [at_low_z, at_high_z] = table.section?.shoulder_diameters;
+        (at_low_z != at_high_z).then(|| (at_low_z - at_high_z).signum())
+    };
+    let drawn: Vec<f64> = [&scene.inner, &scene.outer]
+        .into_iter()
+        .filter_map(unequal)
+        .collect();
+    let is_one = drawn.iter().all(|sign| *sign == drawn[0]);
+    Shoulders {
+        direction: match drawn.first() {
+            Some(sign) => is_one.then_some(*sign),
+            None => scene.bearing.has_contact_angle.then_some(1.0),
+        },
+        ends: Side::BOTH.map(|side| match rings[side.index()] {
+            Some(_) => None,
+            None => groove_ends(scene, (geometry, side), None),
+        }),
+    }
+}
+
 /// Groove angles where a groove ends, rad: those of its mesh, else of its section; None where neither is there.
-fn shoulders(
+fn groove_ends(
     scene: &Scene,
     (geometry, side): (&BearingGeometry, Side),
     ring: Option<&RingModel>,

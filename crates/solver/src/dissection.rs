@@ -32,7 +32,7 @@ mod part;
 mod refine;
 mod sweep;
 
-use part::Part;
+use part::Subdomain;
 
 /// Largest part ordered by minimum degree instead of being cut. Of 15 to 250 nodes, 15 to 40 fill least (within 2 %).
 const LEAF_NODES: usize = 40;
@@ -91,14 +91,14 @@ struct Dissection<'a> {
     order: Vec<usize>,
     /// Nodes that are in the order or in a separator still to be appended.
     placed: Vec<bool>,
-    /// Scratch of [`Part::new`], all `usize::MAX` between calls.
+    /// Scratch of [`Subdomain::new`], all `usize::MAX` between calls.
     local: Vec<usize>,
 }
 
 impl Dissection<'_> {
     /// Appends all nodes of a set of elements that are not placed yet.
     fn dissect(&mut self, set: Vec<usize>) {
-        let part = Part::new(
+        let part = Subdomain::new(
             &set,
             self.elements,
             self.nodes_per_element,
@@ -133,7 +133,7 @@ impl Dissection<'_> {
     }
 
     /// Sides of the elements at the best cut, `None` when no cut leaves nodes on both sides.
-    fn best_cut(&self, set: &[usize], part: &Part) -> Option<Vec<bool>> {
+    fn best_cut(&self, set: &[usize], part: &Subdomain) -> Option<Vec<bool>> {
         let mut planes = Vec::with_capacity(3);
         for direction in 0..3 {
             let mut keys: Vec<f64> = set.iter().map(|&e| self.centroids[e][direction]).collect();

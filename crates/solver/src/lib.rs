@@ -52,8 +52,8 @@ mod symbolic;
 pub use bordered::Bordered;
 pub use cholesky::SparseCholesky;
 pub use cyclic::{
-    Coupling, CyclicBordered, CyclicCholesky, CyclicMatrix, CyclicRing, CyclicStencil, NodalLoad, Patch,
-    ResponseTable, SectionPart, Symmetry,
+    Coupling, CyclicBordered, CyclicCholesky, CyclicMatrix, CyclicRing, CyclicStencil, NodalLoad,
+    PatchWeights, ResponseTable, SectionPart, Symmetry,
 };
 pub use dissection::angular_dissection;
 pub use error::SolverError;
@@ -62,8 +62,8 @@ pub use permutation::{expand, restrict_order};
 pub use products::products;
 pub use refinement::{Refined, solve_refined};
 pub use sector::{
-    BorderedColumns, Points, Sector, SectorBordered, SectorCholesky, SectorColumns, SectorCost, SectorCut,
-    SectorLayout, SectorSymbolic, default_sectors,
+    BorderedHalves, Points, Sector, SectorBordered, SectorCholesky, SectorColumns, SectorCost, SectorCut,
+    SectorHalves, SectorLayout, SectorSymbolic, default_sectors,
 };
 pub use submatrix::{restrict, restrict_lower};
 pub use symbolic::Symbolic;

@@ -28,23 +28,23 @@ const RELAX: &[(usize, f64)] = &[(12, 1.0), (36, 0.5), (96, 0.2), (usize::MAX, 0
 /// of several step sizes, are factored with it; clones share it.
 #[derive(Clone, Debug)]
 pub struct Symbolic {
-    pub(crate) shared: Arc<Analysis>,
+    pub(crate) shared: Arc<PatternAnalysis>,
 }
 
 /// What the clones share.
 #[derive(Debug)]
-pub(crate) struct Analysis {
+pub(crate) struct PatternAnalysis {
     pub(crate) faer: SymbolicCholesky<usize>,
     /// `order[k]` is the caller's row eliminated in place k, postordered.
     pub(crate) order: Vec<usize>,
     /// Fingerprint of the pattern analysed.
-    pub(crate) pattern: Pattern,
+    pub(crate) pattern: PatternFingerprint,
     flops: f64,
 }
 
 /// Identifies a sparsity pattern.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Pattern {
+pub(crate) struct PatternFingerprint {
     pub(crate) n_entries: usize,
     hash: u64,
     by_columns: bool,
@@ -91,9 +91,9 @@ impl Symbolic {
             bytes: 8 * matrix.nnz(),
         })?;
         let flops = supernodes(&faer).map_or(0.0, count_flops);
-        let pattern = Pattern::of(matrix);
+        let pattern = PatternFingerprint::of(matrix);
         Ok(Symbolic {
-            shared: Arc::new(Analysis {
+            shared: Arc::new(PatternAnalysis {
                 faer,
                 order,
                 pattern,
@@ -148,7 +148,7 @@ impl Symbolic {
     /// Fails unless a matrix has the analysed pattern.
     pub(crate) fn require_pattern(&self, matrix: &CsMat<f64>) -> Result<(), SolverError> {
         square_size(matrix)?;
-        if Pattern::of(matrix) != self.shared.pattern {
+        if PatternFingerprint::of(matrix) != self.shared.pattern {
             let expected = self.shared.pattern.n_entries;
             return Err(SolverError::PatternChanged {
                 found: matrix.nnz(),
@@ -165,7 +165,7 @@ impl Symbolic {
     }
 }
 
-impl Pattern {
+impl PatternFingerprint {
     fn of(matrix: &CsMat<f64>) -> Self {
         // FNV-1a on whole words: a different matrix of equal size must not slip through, malice is not expected.
         let indptr = matrix.indptr();
@@ -175,7 +175,7 @@ impl Pattern {
                 .wrapping_mul(0x0000_0100_0000_01b3)
                 .rotate_left(23)
         });
-        Pattern {
+        PatternFingerprint {
             n_entries: matrix.nnz(),
             hash,
             by_columns: matrix.is_csc(),

@@ -131,6 +131,7 @@ const FREQUENCY: Abscissa = Abscissa {
 pub fn spectrum(request: &SpectrumCommand) -> Result<(), Failure> {
     let dir = &request.dir;
     require_folder(dir)?;
+    plot::require_one_bearing(dir)?;
     let signal = request.signal()?;
     let mut marks = lines(dir, &scene_of(dir)?, signal.span)?;
     let named = request.transform(&signal)?;

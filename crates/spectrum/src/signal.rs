@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use anyhow::{anyhow, ensure};
-use plot::{Unit, quantity};
+use plot::{AxisUnit, quantity};
 use results::table::Table;
 
 use crate::fourier;
@@ -23,7 +23,7 @@ pub struct Signal {
     /// Unit as it ends names of columns.
     pub ending: String,
     /// How it is shown.
-    pub unit: Unit,
+    pub unit: AxisUnit,
     /// SI.
     pub values: Vec<f64>,
     /// Angle of the tachometer at every sample, rad; None without one.

@@ -12,7 +12,7 @@ use results::failure::Failure;
 use results::integrity::warn_of_doubts;
 use results::table::Table;
 use results::whole::write;
-use scene::{Motion, Scene, geometry};
+use scene::{Scene, ShaftMotion, geometry};
 
 use crate::passages::{BallAt, LEAST_QUIET, PassedBearing, ShaftRecord, SpallPassage, passages};
 use crate::signal::equal_rate;
@@ -40,6 +40,7 @@ const SPREAD: f64 = 0.02;
 pub fn spall_length(command: &SpallLengthCommand) -> Result<(), Failure> {
     let dir = &command.dir;
     require_folder(dir)?;
+    plot::require_one_bearing(dir)?;
     let scene = scene_of(dir)?;
     let side = Side::BOTH.into_iter().find(|side| side.name() == command.ring);
     let side = side.expect("the command line knows both names");
@@ -201,7 +202,7 @@ fn known(
         (None, None) => 0.0,
     };
     let mass = mass.unwrap_or(shaft.mass + own);
-    let is_free = [shaft.x, shaft.y, shaft.z].map(|motion| motion == Motion::Free);
+    let is_free = [shaft.x, shaft.y, shaft.z].map(|motion| motion == ShaftMotion::Free);
     ensure!(
         is_free.contains(&true),
         "x, y and z of the shaft are held: nothing tells what a ball lacks; expected shaft.x = \"free\""

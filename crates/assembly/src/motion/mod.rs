@@ -4,13 +4,14 @@
 //! mean load that has to act there. The shaft moves by average acceleration, as the bearings do:
 //!
 //! ```text
-//! M (v1 - v0)/h + G (W1 q1 - W0 q0)/h + K (q0 + q1)/2 + sum over bearings S^T T^T r(T S q1 + shift) = f(t + h/2)
+//! M (v1 - v0)/h + G (W1 q1 - W0 q0)/h + K (q0 + q1)/2 + sum over bearings S^T T^T r(T S q1 + shift) = f
 //! q1 - q0 = h (v0 + v1)/2
 //! ```
 //!
-//! with the letters of the crate's page, G of 1 rad/s and the speed W. The sum of a bearing's loads times the motion of
-//! its place is the work that goes into it, the `imposed_work` of its ledger. So shaft and bearings together gain no
-//! energy: the shaft has a ledger of its own ([`ShaftLedger`]), and each closes by itself.
+//! with the letters of the crate's page, G of 1 rad/s, the speed W, and the mean load f over the step. The sum of a
+//! bearing's loads times the motion of its place is the work that goes into it, the `imposed_work` of its ledger. So
+//! shaft and bearings together gain no energy: the shaft has a ledger of its own ([`ShaftLedger`]), and each closes by
+//! itself.
 //!
 //! A body that carries several bearings moves in each of them, whole, with the loads of the others on its oscillators.
 //! These are handed on until they stay as they are, so all copies move alike (`bodies`).
@@ -27,6 +28,7 @@ mod side_by_side;
 mod step;
 
 use comm::Communicator;
+use dynamics::effects::Now;
 use dynamics::kinematics::Speed;
 use dynamics::motion::held::{HeldAnswer, HeldPart, Holding};
 use dynamics::motion::{Integrator, Motion, MotionSettings, MotionState, PartSpan, StepCache, StepReport};
@@ -46,8 +48,8 @@ use crate::newton::Mount;
 /// Rounds for patches and frames before a part counts as failed.
 const MAX_ROUNDS: usize = 60;
 
-/// Loads on the dofs of the shaft at a time, s, N and N m.
-pub type LoadAt<'a> = dyn Fn(f64) -> Result<Vec<f64>, AssemblyError> + Sync + 'a;
+/// Loads on the dofs of the shaft, N and N m: their means over an interval about an instant.
+pub type LoadAt<'a> = dyn Fn(&Now<'_>) -> Result<Vec<f64>, AssemblyError> + Sync + 'a;
 
 /// Bearings and shaft ready to move.
 pub struct AssemblyMotion<'a> {
@@ -237,7 +239,11 @@ impl<'a> AssemblyMotion<'a> {
             dt: span.dt,
             speeds: [0.0, 1.0].map(|share| self.speed.at(span.at(share))),
             start: [&state.shaft, &state.velocity],
-            load: (self.load)(span.at(0.5))?,
+            load: (self.load)(&Now {
+                time: span.at(0.5),
+                width: span.dt,
+                ..Now::default()
+            })?,
             tilt_arm: self.assembly.scales().tilt_arm,
         };
         let (mut end, mut kept) = (step.guess(), KeptFactors::new(&step, cache.shaft.take()));

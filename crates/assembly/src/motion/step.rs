@@ -17,7 +17,7 @@ pub struct ShaftStep<'a> {
     pub speeds: [f64; 2],
     /// Displacement and velocity at the start.
     pub start: [&'a [f64]; 2],
-    /// Load in the middle, N and N m.
+    /// Mean load, N and N m.
     pub load: Vec<f64>,
     /// Length by which tilts count, m.
     pub tilt_arm: f64,

@@ -4,6 +4,7 @@
 mod modes;
 mod shaft;
 mod stiffness;
+mod turning;
 mod whirl;
 
 use std::collections::BTreeMap;

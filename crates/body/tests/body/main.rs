@@ -342,6 +342,31 @@ fn meshes_that_do_not_fit_are_refused_with_a_remedy() {
     refuse(small(), "outside", basis(3, 8), "fewer harmonics or across");
 }
 
+/// Wrong: a ring far beside its seat would be blamed on the mesh, or one in its place be refused.
+#[test]
+fn a_ring_beside_its_seat_is_refused_with_its_distance() {
+    let mesh = small();
+    let origin = Origin::of_generated("tube", 1.0, &mesh);
+    let with = |z: Option<f64>| {
+        let seat = BodySeat {
+            group: "seat_a".into(),
+            space: space(basis(2, 1)),
+            middle: z,
+            is_turned: false,
+        };
+        let held = ["outside".to_string()];
+        let found = Surrounding::of_mesh("tube", (mesh.clone(), &origin), material(0.3), &held, &[seat]);
+        found.err().map(|error| error.to_string())
+    };
+    let middle = space(basis(2, 1)).middle;
+    assert_eq!(with(None), None);
+    assert_eq!(with(Some(middle + 1.5e-3)), None);
+    let expected = "the ring stands beside the seat \"seat_a\" of body \"tube\": its middle lies 60.0000 mm along z \
+                    from that of the seat, which is 16.0000 mm wide; expected at most 1.6000 mm: give another z of \
+                    the seat, or none for the middle of its group";
+    assert_eq!(with(Some(middle - 60e-3)).as_deref(), Some(expected));
+}
+
 /// Wrong: a body could be held at an edge, or not at all.
 #[test]
 fn bodies_that_can_move_are_refused() {

@@ -4,7 +4,7 @@
 //! arguments symmetrically, so R_D(x, y, z) and R_D(x, z, y) share it. Reference: Carlson (1995), Numerical
 //! Algorithms 10, 13-26, doi:10.1007/BF02198293; NIST DLMF 19.26.18, 19.36.2.
 
-use super::confocal::{LANES, Lanes};
+use super::confocal::{LANES, PointLanes};
 
 /// Relative distance of the arguments at which the series of fifth order is exact to the last bits.
 const CLOSE: f64 = 2e-3;
@@ -32,7 +32,7 @@ fn duplicate(x: [f64; 3]) -> [f64; 3] {
 
 /// [R_D(x, y, z), R_D(x, z, y)] after `n` duplications; x may be zero.
 #[inline(always)]
-pub(super) fn rd_pair(x: &Lanes, y: &Lanes, z: &Lanes, n: usize) -> [Lanes; 2] {
+pub(super) fn rd_pair(x: &PointLanes, y: &PointLanes, z: &PointLanes, n: usize) -> [PointLanes; 2] {
     let (mut x, mut y, mut z) = (*x, *y, *z);
     let mut sums = [[0.0; LANES]; 2];
     let mut power = 1.0;

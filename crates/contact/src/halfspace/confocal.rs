@@ -6,7 +6,7 @@
 /// Points that are worked on together, so that the compiler uses vector instructions.
 pub(super) const LANES: usize = 8;
 /// One number per point.
-pub(super) type Lanes = [f64; LANES];
+pub(super) type PointLanes = [f64; LANES];
 
 /// Relative change at which the iteration has converged: it is quadratic.
 const CONVERGED: f64 = 1e-13;
@@ -20,7 +20,7 @@ const MAX_ROUNDS: usize = 60;
 /// ellipse, where the root is double. The start takes the larger of two lower bounds: both terms with a^2, and the
 /// second term alone. A lane that has converged is frozen: its number does not depend on its neighbours.
 #[inline(always)]
-pub(super) fn confocal([x2, y2, z2]: &[Lanes; 3], a2: f64, b2: f64) -> Lanes {
+pub(super) fn confocal([x2, y2, z2]: &[PointLanes; 3], a2: f64, b2: f64) -> PointLanes {
     let mut lambda = [0.0; LANES];
     for i in 0..LANES {
         let both = oblate(x2[i] + y2[i], z2[i], a2);

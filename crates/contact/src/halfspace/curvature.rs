@@ -30,7 +30,7 @@
 use pulp::{Simd, WithSimd};
 
 use super::confocal::LANES;
-use super::rays::{Directions, Loads, Rays};
+use super::rays::{Directions, FarLoads, Rays};
 use super::stress::EllipticPressure;
 use super::target::Target;
 
@@ -67,8 +67,8 @@ pub struct CurvatureRules {
     slender: Rays,
     round: Rays,
     rough: Rays,
-    sixteen: Loads,
-    four: Loads,
+    sixteen: FarLoads,
+    four: FarLoads,
 }
 
 /// A surface with constant curvatures, ready to correct the stress under pressures on it.
@@ -113,8 +113,8 @@ impl CurvatureRules {
             slender: Rays::new(SLENDER.rays),
             round: Rays::new(ROUND.rays),
             rough: Rays::new(ROUGH.rays),
-            sixteen: Loads::sixteen(),
-            four: Loads::four(),
+            sixteen: FarLoads::sixteen(),
+            four: FarLoads::four(),
         }
     }
 }

@@ -10,7 +10,7 @@
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
-use super::confocal::{LANES, Lanes};
+use super::confocal::{LANES, PointLanes};
 use super::target::Target;
 use crate::quadrature::gauss_legendre;
 
@@ -34,7 +34,7 @@ pub(super) struct Directions {
 }
 
 /// Loads that do for all points far from the ellipse.
-pub(super) struct Loads {
+pub(super) struct FarLoads {
     /// Place on the unit disc and weight.
     loads: Vec<([f64; 2], f64)>,
 }
@@ -99,7 +99,13 @@ impl Rays {
 
     /// Adds the loads on one ray from each foot, of a weight in angle.
     #[inline(always)]
-    fn ray(&self, foot: &[Lanes; 2], direction: &[Lanes; 2], weight: &Lanes, target: &mut Target) {
+    fn ray(
+        &self,
+        foot: &[PointLanes; 2],
+        direction: &[PointLanes; 2],
+        weight: &PointLanes,
+        target: &mut Target,
+    ) {
         let (mut back, mut start, mut end) = ([0.0; LANES], [0.0; LANES], [0.0; LANES]);
         for i in 0..LANES {
             let (x, y) = (foot[0][i], foot[1][i]);
@@ -141,21 +147,21 @@ impl Directions {
     }
 }
 
-impl Loads {
+impl FarLoads {
     /// Sixteen loads, of seventh degree.
-    pub fn sixteen() -> Loads {
+    pub fn sixteen() -> FarLoads {
         let root = (64.0f64 / 81.0 - 32.0 / 63.0).sqrt();
         let v = [4.0 / 9.0 + 0.5 * root, 4.0 / 9.0 - 0.5 * root];
         // Weights that give 1 and the mean of v, 2/5.
         let outer = (0.4 - v[1]) / root;
-        Loads {
+        FarLoads {
             loads: [circle(8, v[0], outer), circle(8, v[1], 1.0 - outer)].concat(),
         }
     }
 
     /// Four loads, of third degree.
-    pub fn four() -> Loads {
-        Loads {
+    pub fn four() -> FarLoads {
+        FarLoads {
             loads: circle(4, 0.4, 1.0),
         }
     }
@@ -181,7 +187,7 @@ fn circle(n: usize, square: f64, share: f64) -> Vec<([f64; 2], f64)> {
 
 /// [cos, sin] of angles up to a right angle, by their series, which vectors can do.
 #[inline(always)]
-fn turns(angles: &Lanes) -> [Lanes; 2] {
+fn turns(angles: &PointLanes) -> [PointLanes; 2] {
     let (mut cos, mut sin) = ([1.0; LANES], [1.0; LANES]);
     for k in (1..=TERMS).rev() {
         let k = k as f64;

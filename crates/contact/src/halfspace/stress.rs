@@ -33,7 +33,7 @@ use std::f64::consts::PI;
 use pulp::{Simd, WithSimd};
 
 use super::carlson::{n_duplications, rd_pair};
-use super::confocal::{LANES, Lanes, confocal};
+use super::confocal::{LANES, PointLanes, confocal};
 
 /// c w below which E_aa and E_ab are integrated numerically: the closed forms divide by c.
 const NEARLY_CIRCULAR: f64 = 0.05;
@@ -112,7 +112,7 @@ impl EllipticPressure {
 
     /// Stress at points in units of the larger semi-axis, which is along x, by components.
     #[inline(always)]
-    fn lanes(&self, x: &[Lanes; 3]) -> [Lanes; 6] {
+    fn lanes(&self, x: &[PointLanes; 3]) -> [PointLanes; 6] {
         let (a2, b2) = (self.a2, self.b2);
         let mut squares = *x;
         squares.as_flattened_mut().iter_mut().for_each(|x| *x *= *x);
@@ -123,7 +123,7 @@ impl EllipticPressure {
             b2_l[i] += b2;
         }
         let [i_a, i_b] = rd_pair(&lambda, &b2_l, &a2_l, self.n_duplications);
-        let places = Places {
+        let places = ConfocalPoints {
             x: *x,
             lambda,
             semi2: [a2_l, b2_l],
@@ -180,19 +180,19 @@ impl WithSimd for Stresses<'_> {
 }
 
 /// Points with their confocal ellipsoids, in units of the larger semi-axis.
-struct Places {
-    x: [Lanes; 3],
-    lambda: Lanes,
+struct ConfocalPoints {
+    x: [PointLanes; 3],
+    lambda: PointLanes,
     /// a^2 + l and b^2 + l.
-    semi2: [Lanes; 2],
+    semi2: [PointLanes; 2],
     /// a^2 - b^2.
     c: f64,
 }
 
-impl Places {
+impl ConfocalPoints {
     /// z / sqrt(l), which is the pressure's square root where l and z vanish.
     #[inline(always)]
-    fn zeta(&self) -> Lanes {
+    fn zeta(&self) -> PointLanes {
         let mut zeta = [0.0; LANES];
         for i in 0..LANES {
             let [x, y, z] = [self.x[0][i], self.x[1][i], self.x[2][i]];
@@ -236,7 +236,7 @@ impl Places {
 
     /// The elementary parts of psi_xx, psi_yy and -psi_xy.
     #[inline(always)]
-    fn surface(&self, zeta: &Lanes) -> [Lanes; 3] {
+    fn surface(&self, zeta: &PointLanes) -> [PointLanes; 3] {
         let c = self.c;
         let (mut ratio, mut v_a, mut v_b) = ([0.0; LANES], [0.0; LANES], [0.0; LANES]);
         for i in 0..LANES {

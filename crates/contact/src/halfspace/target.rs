@@ -2,23 +2,23 @@
 
 use std::f64::consts::PI;
 
-use super::confocal::{LANES, Lanes};
+use super::confocal::{LANES, PointLanes};
 use super::stress::EllipticPressure;
 
 /// Points whose stress is being summed up.
 pub(super) struct Target {
     /// [x, y, depth], m.
-    pub(super) point: [Lanes; 3],
+    pub(super) point: [PointLanes; 3],
     pub(super) axes: [f64; 2],
     pub(super) curvatures: [f64; 2],
     pub(super) poisson_ratio: f64,
-    pub(super) sum: [Lanes; 6],
+    pub(super) sum: [PointLanes; 6],
 }
 
 impl Target {
     /// The feet of the points on the unit disc.
     #[inline(always)]
-    pub fn foot(&self) -> [Lanes; 2] {
+    pub fn foot(&self) -> [PointLanes; 2] {
         let mut foot = [[0.0; LANES]; 2];
         for i in 0..LANES {
             foot[0][i] = self.point[0][i] / self.axes[0];
@@ -29,7 +29,7 @@ impl Target {
 
     /// Adds loads at places on the unit disc, with the integral of sqrt(1 - r^2) that each stands for.
     #[inline(always)]
-    pub fn add(&mut self, at: &[Lanes; 2], weight: &Lanes) {
+    pub fn add(&mut self, at: &[PointLanes; 2], weight: &PointLanes) {
         for i in 0..LANES {
             let from = [
                 self.point[0][i] - self.axes[0] * at[0][i],

@@ -48,7 +48,7 @@ pub(super) struct Basis {
 }
 
 /// An orthonormal block Q and what it came from: W = Q R.
-pub(super) struct Block {
+pub(super) struct OrthonormalBlock {
     /// Q, column-major `[n][width]`.
     pub vectors: Vec<f64>,
     /// M Q, column-major `[n][width]`.
@@ -99,7 +99,7 @@ impl Basis {
         problem: &dyn EigenProblem,
         mut w: Vec<f64>,
         width: usize,
-    ) -> (Block, Vec<f64>) {
+    ) -> (OrthonormalBlock, Vec<f64>) {
         let (n, m) = (self.n, self.len());
         let mut coefficients = vec![0.0; m * width];
         let mut mass = problem.mass(&w, width);
@@ -116,7 +116,7 @@ impl Basis {
         self.subtract_projection(&mut vectors, &first.mass, first.width);
         let mass = problem.mass(&vectors, first.width);
         let second = gram_schmidt(n, vectors, mass, &vec![0.0; first.width]);
-        let block = Block {
+        let block = OrthonormalBlock {
             factor: first.factor,
             ..second
         };
@@ -136,7 +136,7 @@ impl Basis {
 }
 
 /// Gram-Schmidt in M, every column twice against those before it; `lengths` are what columns count against to be new.
-fn gram_schmidt(n: usize, mut block: Vec<f64>, mut mass: Vec<f64>, lengths: &[f64]) -> Block {
+fn gram_schmidt(n: usize, mut block: Vec<f64>, mut mass: Vec<f64>, lengths: &[f64]) -> OrthonormalBlock {
     let n_columns = lengths.len();
     let (mut kept, mut kept_mass): (Vec<f64>, Vec<f64>) = (Vec::new(), Vec::new());
     let mut rows = vec![0.0; n_columns * n_columns];
@@ -164,7 +164,7 @@ fn gram_schmidt(n: usize, mut block: Vec<f64>, mut mass: Vec<f64>, lengths: &[f6
         width += 1;
     }
     let factor = (0..n_columns).flat_map(|j| rows[n_columns * j..n_columns * j + width].to_vec());
-    Block {
+    OrthonormalBlock {
         vectors: kept,
         mass: kept_mass,
         width,

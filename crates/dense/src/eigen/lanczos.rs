@@ -25,7 +25,7 @@
 //! Cost per step: one block solve, four products with M, and 8 n m b operations for m basis vectors. Memory: the
 //! basis, 8 n [`LanczosSettings::capacity`] bytes, once more at a restart.
 
-use super::basis::{Basis, Block};
+use super::basis::{Basis, OrthonormalBlock};
 use super::problem::{EigenProblem, Eigenpairs};
 use super::symmetric::symmetric_eigen;
 use super::whole::dense_lowest;
@@ -141,14 +141,14 @@ struct Search<'a> {
     /// V^T M A V, row-major `[m][m]`.
     projected: Vec<f64>,
     /// The block to be appended; its factor couples it to the last columns of the basis.
-    next: Block,
+    next: OrthonormalBlock,
     random: Random,
     steps: usize,
 }
 
 impl<'a> Search<'a> {
     fn new(problem: &'a dyn EigenProblem, settings: LanczosSettings) -> Search<'a> {
-        let empty = Block {
+        let empty = OrthonormalBlock {
             vectors: Vec::new(),
             mass: Vec::new(),
             width: 0,
@@ -224,7 +224,7 @@ impl<'a> Search<'a> {
     }
 
     /// A random block orthogonal to the basis.
-    fn random_block(&mut self) -> Block {
+    fn random_block(&mut self) -> OrthonormalBlock {
         let mut block = random_in(&self.basis, self.problem, &mut self.random, self.settings.block);
         block.factor.clear();
         block
@@ -313,7 +313,12 @@ impl<'a> Search<'a> {
 }
 
 /// Block of random vectors, smoothed by one application of the operator, orthonormal and orthogonal to `basis`.
-fn random_in(basis: &Basis, problem: &dyn EigenProblem, random: &mut Random, width: usize) -> Block {
+fn random_in(
+    basis: &Basis,
+    problem: &dyn EigenProblem,
+    random: &mut Random,
+    width: usize,
+) -> OrthonormalBlock {
     let n = problem.n();
     let noise: Vec<f64> = (0..n * width).map(|_| random.next()).collect();
     let smooth = problem.solve(problem.mass(&noise, width), width);

@@ -12,6 +12,7 @@
 //! Drag -c |v| v takes the mean velocity, u/h. Newton's tangent leaves it out: c |v| h / m is below 1e-3.
 
 use super::UNMOVED;
+use crate::model::BallInertia;
 use crate::system::{Interval, Lumped};
 
 /// A free ball over a step.
@@ -19,8 +20,8 @@ use crate::system::{Interval, Lumped};
 pub struct FreeBall {
     /// Its number.
     pub ball: usize,
-    /// Mass, kg, and moment of inertia, kg m^2.
-    pub inertia: [f64; 2],
+    /// Its inertia.
+    pub inertia: BallInertia,
     /// Place at the start, m.
     pub place: [f64; 3],
     /// Velocity at the start, m/s.
@@ -109,7 +110,7 @@ impl Lumped for FreeBall {
 
     fn balance(&self, _interval: Interval, x: &[f64], residual: &mut [f64]) {
         let [velocity, turning] = self.velocities(x);
-        let ([mass, moment], drag) = (self.inertia, self.drag_force(x));
+        let (BallInertia { mass, moment }, drag) = (self.inertia, self.drag_force(x));
         for i in 0..3 {
             residual[i] = mass * (velocity[i] - self.velocity[i]) / self.dt - self.load[i] + drag[i];
             residual[3 + i] = moment * (turning[i] - self.turning[i]) / self.dt;
@@ -118,8 +119,9 @@ impl Lumped for FreeBall {
 
     fn tangent(&self, _interval: Interval) -> Vec<f64> {
         let mut tangent = vec![0.0; 36];
-        for i in 0..6 {
-            tangent[7 * i] = 2.0 * self.inertia[i / 3] / (self.dt * self.dt);
+        for i in 0..3 {
+            tangent[7 * i] = 2.0 * self.inertia.mass / (self.dt * self.dt);
+            tangent[7 * (3 + i)] = 2.0 * self.inertia.moment / (self.dt * self.dt);
         }
         tangent
     }
@@ -151,7 +153,10 @@ mod tests {
     fn forces_over_a_step_are_its_change_of_energy() {
         let ball = FreeBall {
             ball: 3,
-            inertia: [3e-3, 2.4e-8],
+            inertia: BallInertia {
+                mass: 3e-3,
+                moment: 2.4e-8,
+            },
             place: [0.03, 0.01, 0.0],
             velocity: [0.7, -2.0, 0.1],
             turning: [100.0, -20.0, 600.0],
@@ -166,7 +171,7 @@ mod tests {
         let work: f64 = residual.iter().zip(x).map(|(f, u)| f * u).sum();
         let energy = |v: [f64; 3], w: [f64; 3]| {
             let square = |a: [f64; 3]| a.iter().map(|x| x * x).sum::<f64>();
-            0.5 * (ball.inertia[0] * square(v) + ball.inertia[1] * square(w))
+            0.5 * (ball.inertia.mass * square(v) + ball.inertia.moment * square(w))
         };
         let [v, w] = ball.velocities(&x);
         let gain = energy(v, w) - energy(ball.velocity, ball.turning);

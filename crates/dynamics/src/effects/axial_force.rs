@@ -19,13 +19,13 @@ schedule.ramp = { start = "0 s", duration = "1 ms" }    # optional: its factor o
 /// The table of a scene.
 #[derive(Clone, Debug, Deserialize, PartialEq)]
 #[serde(deny_unknown_fields, expecting = "the table [effects.axial_force]")]
-pub struct Table {
+pub struct AxialForceTable {
     /// Force along +z.
     pub value: Quantity<FORCE>,
     schedule: Option<RawSchedule>,
 }
 
-impl table::Table for Table {
+impl table::EffectTable for AxialForceTable {
     fn about() -> About {
         About {
             name: "axial_force",
@@ -45,13 +45,13 @@ impl table::Table for Table {
     fn load(&self, _setting: Setting<'_>) -> Result<Option<Box<dyn Effect>>, DynamicsError> {
         Ok(Some(Box::new(AxialForce {
             value: self.value.si(),
-            schedule: table::Table::schedule(self),
+            schedule: table::EffectTable::schedule(self),
         })))
     }
 
     fn peak_load(&self, _speed: f64) -> PeakLoad {
         PeakLoad {
-            axial: self.value.si().abs() * table::Table::schedule(self).peak(),
+            axial: self.value.si().abs() * table::EffectTable::schedule(self).peak(),
             ..PeakLoad::default()
         }
     }

@@ -13,6 +13,7 @@ use super::rules::{Case, judge, percent};
 use super::table::{self, About, Setting, SpeedRole, Trial};
 use crate::balls::BallResult;
 use crate::error::DynamicsError;
+use crate::kinematics::SlipRatios;
 use crate::kinematics::{BallSpeeds, Kinematics, RingSpeeds};
 use crate::model::{Effect, Model};
 
@@ -24,9 +25,9 @@ const MATTERS: f64 = 0.01;
 /// The table of a scene: it has no keys.
 #[derive(Clone, Debug, Deserialize, PartialEq)]
 #[serde(deny_unknown_fields, expecting = "the empty table [effects.ball_centrifugal]")]
-pub struct Table {}
+pub struct BallCentrifugalTable {}
 
-impl table::Table for Table {
+impl table::EffectTable for BallCentrifugalTable {
     fn about() -> About {
         About {
             name: "ball_centrifugal",
@@ -65,7 +66,7 @@ pub struct BallCentrifugal {
     /// Speeds of the rings.
     pub speeds: RingSpeeds,
     /// Slip ratios at the inner and outer raceway.
-    pub slip: [f64; 2],
+    pub slip: SlipRatios,
     /// Contact angles that the speeds follow.
     pub ball_speeds: BallSpeeds,
 }

@@ -29,12 +29,12 @@ const MOST_COEFFICIENT: f64 = 1e3;
 /// The table of a scene.
 #[derive(Clone, Debug, Deserialize, PartialEq)]
 #[serde(deny_unknown_fields, expecting = "the table [effects.ball_drag]")]
-pub struct Table {
+pub struct BallDragTable {
     coefficient: f64,
     density: Quantity<DENSITY>,
 }
 
-impl table::Table for Table {
+impl table::EffectTable for BallDragTable {
     fn about() -> About {
         About {
             name: "ball_drag",
@@ -85,7 +85,7 @@ impl table::Table for Table {
     }
 }
 
-impl Table {
+impl BallDragTable {
     fn drag(&self) -> BallDrag {
         BallDrag {
             pressure: 0.5 * self.density.si() * self.coefficient,

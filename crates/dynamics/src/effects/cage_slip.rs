@@ -24,12 +24,12 @@ const HIRANO: f64 = 10.0;
 /// The table of a scene.
 #[derive(Clone, Debug, Deserialize, PartialEq)]
 #[serde(deny_unknown_fields, expecting = "the table [effects.cage_slip]")]
-pub struct Table {
+pub struct CageSlipTable {
     inner: f64,
     outer: f64,
 }
 
-impl table::Table for Table {
+impl table::EffectTable for CageSlipTable {
     fn about() -> About {
         About {
             name: "cage_slip",

@@ -23,12 +23,12 @@ const MAX_FULL_APPROACH: f64 = 1e-3;
 /// The table of a scene.
 #[derive(Clone, Debug, Deserialize, PartialEq)]
 #[serde(deny_unknown_fields, expecting = "the table [effects.contact_damping]")]
-pub struct Table {
+pub struct ContactDampingTable {
     coefficient: Quantity<DAMPING>,
     full_approach: Quantity<LENGTH>,
 }
 
-impl table::Table for Table {
+impl table::EffectTable for ContactDampingTable {
     fn about() -> About {
         About {
             name: "contact_damping",

@@ -36,7 +36,7 @@ const MOST_INTERFERENCE: f64 = 0.01;
     deny_unknown_fields,
     expecting = "the tables [effects.fit.inner] and [effects.fit.outer]"
 )]
-pub struct Table {
+pub struct FitTable {
     inner: Option<ShaftFit>,
     outer: Option<HousingFit>,
 }
@@ -69,7 +69,7 @@ struct Joint<'a> {
     poisson_ratio: Option<f64>,
 }
 
-impl table::Table for Table {
+impl table::EffectTable for FitTable {
     fn about() -> About {
         About {
             name: "fit",

@@ -32,9 +32,9 @@ const EXAMPLE: &str = "[effects.frame_rotation]        # needs [speed] and a fle
 /// The table of a scene: it has no keys.
 #[derive(Clone, Debug, Deserialize, PartialEq)]
 #[serde(deny_unknown_fields, expecting = "the empty table [effects.frame_rotation]")]
-pub struct Table {}
+pub struct FrameRotationTable {}
 
-impl table::Table for Table {
+impl table::EffectTable for FrameRotationTable {
     fn about() -> About {
         About {
             name: "frame_rotation",
@@ -119,7 +119,7 @@ impl Effect for FrameRotation {
 /// Inertia of the undeformed rings in their own frames, inner first, N, `[n_nodes][3]` flat: what statics sees of
 /// turning frames. Collective.
 pub fn static_inertia(model: &Model, loads: &Loads) -> Result<[Option<Vec<f64>>; 2], DynamicsError> {
-    let of = |side: Side| -> Result<Option<Vec<f64>>, DynamicsError> {
+    Side::try_both(|side| {
         let (Some(turn), Some(ring)) = (loads.frames[side.index()], model.ring(side)) else {
             return Ok(None);
         };
@@ -128,6 +128,5 @@ pub fn static_inertia(model: &Model, loads: &Loads) -> Result<[Option<Vec<f64>>;
         let inertia =
             |[x, y, _]: [f64; 3]| [square * x + rate * y, square * y - rate * x, 0.0].map(|f| density * f);
         Ok(Some(body_load(ring, side.name(), model.backend, inertia)?))
-    };
-    Ok([of(Side::Inner)?, of(Side::Outer)?])
+    })
 }

@@ -34,13 +34,13 @@ const EARTH: f64 = 9.81;
 /// The table of a scene.
 #[derive(Clone, Debug, Deserialize, PartialEq)]
 #[serde(deny_unknown_fields, expecting = "the table [effects.gravity]")]
-pub struct Table {
+pub struct GravityTable {
     acceleration: Quantity<ACCELERATION>,
     direction: [f64; 3],
     schedule: Option<RawSchedule>,
 }
 
-impl Table {
+impl GravityTable {
     /// Acceleration, m/s2, `[3]` in x, y, z.
     pub fn acceleration(&self) -> [f64; 3] {
         let g = self.acceleration.si();
@@ -48,9 +48,9 @@ impl Table {
         self.direction.map(|d| g * d / length)
     }
 
-    /// The same at a time, s.
-    pub fn acceleration_at(&self, time: f64) -> [f64; 3] {
-        let factor = table::Table::schedule(self).at(time);
+    /// The same at an instant, or its mean over an interval.
+    pub fn acceleration_at(&self, now: &Now<'_>) -> [f64; 3] {
+        let factor = now.factor(&table::EffectTable::schedule(self));
         self.acceleration().map(|g| factor * g)
     }
 
@@ -60,7 +60,7 @@ impl Table {
     }
 }
 
-impl table::Table for Table {
+impl table::EffectTable for GravityTable {
     fn about() -> About {
         About {
             name: "gravity",
@@ -109,7 +109,11 @@ impl table::Table for Table {
     }
 
     fn load(&self, setting: Setting<'_>) -> Result<Option<Box<dyn Effect>>, DynamicsError> {
-        let gravity = Gravity::new(self.acceleration(), table::Table::schedule(self), setting.rings)?;
+        let gravity = Gravity::new(
+            self.acceleration(),
+            table::EffectTable::schedule(self),
+            setting.rings,
+        )?;
         Ok(Some(Box::new(gravity)))
     }
 
@@ -146,7 +150,7 @@ impl Gravity {
         Ok(Gravity {
             acceleration,
             schedule,
-            node_masses: [masses(Side::Inner)?, masses(Side::Outer)?],
+            node_masses: Side::try_both(masses)?,
         })
     }
 }

@@ -45,6 +45,7 @@ use super::loads::{Loads, Now};
 use super::rules::{Case, judge, percent};
 use super::table::{self, About, Context, Setting, SpeedRole, Trial};
 use crate::error::DynamicsError;
+use crate::kinematics::SlipRatios;
 use crate::kinematics::{BallSpeeds, RingSpeeds, pitch_angle};
 use crate::model::{Effect, Model};
 
@@ -63,21 +64,40 @@ const HOLD: f64 = 0.02;
 /// The table of a scene.
 #[derive(Clone, Debug, Deserialize, PartialEq)]
 #[serde(deny_unknown_fields, expecting = "the table [effects.gyroscopic_moment]")]
-pub struct Table {
+pub struct GyroscopicMomentTable {
     inner_share: Option<f64>,
     outer_share: Option<f64>,
 }
 
-impl Table {
-    /// Shares of the inner and the outer raceway; one that is not given is the rest of 2, without any the outer raceway
-    /// carries all.
-    pub fn shares(&self) -> [f64; 2] {
+impl GyroscopicMomentTable {
+    /// Shares of the raceways; one that is not given is the rest of 2, without any the outer raceway carries all.
+    pub fn shares(&self) -> MomentShares {
         let inner = self.inner_share.unwrap_or(SUM - self.outer_share.unwrap_or(SUM));
-        [inner, self.outer_share.unwrap_or(SUM - inner)]
+        MomentShares {
+            inner,
+            outer: self.outer_share.unwrap_or(SUM - inner),
+        }
     }
 }
 
-impl table::Table for Table {
+/// Shares lambda of the raceways in the gyroscopic moment; their sum is 2.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MomentShares {
+    /// Share of the inner raceway.
+    pub inner: f64,
+    /// Share of the outer raceway.
+    pub outer: f64,
+}
+
+impl MomentShares {
+    /// The outer raceway carries all: outer raceway control.
+    pub const OUTER_CONTROL: MomentShares = MomentShares {
+        inner: 0.0,
+        outer: SUM,
+    };
+}
+
+impl table::EffectTable for GyroscopicMomentTable {
     fn about() -> About {
         About {
             name: "gyroscopic_moment",
@@ -117,7 +137,7 @@ impl table::Table for Table {
     }
 
     fn check(&self, _context: Context, problems: &mut Problems) {
-        let [inner, outer] = self.shares();
+        let MomentShares { inner, outer } = self.shares();
         for (name, share) in [("inner_share", inner), ("outer_share", outer)] {
             problems.require(
                 (0.0..=SUM).contains(&share),
@@ -149,9 +169,9 @@ pub struct GyroscopicMoment {
     /// Speeds of the rings.
     pub speeds: RingSpeeds,
     /// Slip ratios at the inner and outer raceway.
-    pub slip: [f64; 2],
-    /// Shares lambda of the inner and the outer raceway; their sum is 2.
-    pub shares: [f64; 2],
+    pub slip: SlipRatios,
+    /// Shares of the raceways.
+    pub shares: MomentShares,
     /// Contact angles that the speeds follow.
     pub ball_speeds: BallSpeeds,
 }
@@ -179,7 +199,8 @@ impl Effect for GyroscopicMoment {
         for ball in 0..model.geometry.n_balls {
             let moment = self.moment(model, now, ball);
             for side in Side::BOTH {
-                let size = self.shares[side.index()] * moment / model.geometry.ball_diameter;
+                let size =
+                    side.choose(self.shares.inner, self.shares.outer) * moment / model.geometry.ball_diameter;
                 let (sin, cos) = now.contact_angle(&model.geometry, ball, side).sin_cos();
                 // The ring gets the negative of the force on the ball.
                 let sign = side.sign();

@@ -1,6 +1,6 @@
 //! Effects: loads and other physics that a scene may ask for, one file each.
 //!
-//! The file of an effect holds its table in a scene ([`Table`]), checks, equations, the slots of the bearing that
+//! The file of an effect holds its table in a scene ([`EffectTable`]), checks, equations, the slots of the bearing that
 //! it fills, its rule of thumb and its price. A new one is its file, and here its `mod`, its field and its entry in
 //! [`Effects::list`]. A table that is absent is never constructed and costs nothing.
 
@@ -30,7 +30,7 @@ pub use axial_force::AxialForce;
 pub use ball_centrifugal::BallCentrifugal;
 pub use frame_rotation::{FrameRotation, static_inertia};
 pub use gravity::Gravity;
-pub use gyroscopic_moment::GyroscopicMoment;
+pub use gyroscopic_moment::{GyroscopicMoment, MomentShares};
 pub(crate) use loads::resultant;
 pub use loads::{AtEquilibrium, FrameTurn, Loads, Now};
 
@@ -38,7 +38,7 @@ pub use crate::model::Effect;
 pub use moment::Moment;
 pub use radial_force::RadialForce;
 pub use spring_preload::SpringPreload;
-pub use table::{About, Context, Entry, Need, RingDamping, Setting, SpeedRole, Table, Trial};
+pub use table::{About, Context, EffectEntry, EffectTable, Need, RingDamping, Setting, SpeedRole, Trial};
 pub use traction::{FreeBalls, REPLACED_BY_FREE_BALLS};
 
 use input::{Problems, Schedule};
@@ -55,44 +55,44 @@ use rules::{Case, PeakLoad};
 #[serde(deny_unknown_fields, expecting = "tables [effects.*]")]
 pub struct Effects {
     /// Force on the shaft along z.
-    pub axial_force: Option<axial_force::Table>,
+    pub axial_force: Option<axial_force::AxialForceTable>,
     /// Force on the shaft across z.
-    pub radial_force: Option<radial_force::Table>,
+    pub radial_force: Option<radial_force::RadialForceTable>,
     /// Moment on the shaft.
-    pub moment: Option<moment::Table>,
+    pub moment: Option<moment::MomentTable>,
     /// Weight.
-    pub gravity: Option<gravity::Table>,
+    pub gravity: Option<gravity::GravityTable>,
     /// Centrifugal force of the balls.
-    pub ball_centrifugal: Option<ball_centrifugal::Table>,
+    pub ball_centrifugal: Option<ball_centrifugal::BallCentrifugalTable>,
     /// Gyroscopic moment of the balls.
-    pub gyroscopic_moment: Option<gyroscopic_moment::Table>,
+    pub gyroscopic_moment: Option<gyroscopic_moment::GyroscopicMomentTable>,
     /// Slip of balls on the raceways.
-    pub cage_slip: Option<cage_slip::Table>,
+    pub cage_slip: Option<cage_slip::CageSlipTable>,
     /// Inertia of the inner ring's turning frame.
-    pub frame_rotation: Option<frame_rotation::Table>,
+    pub frame_rotation: Option<frame_rotation::FrameRotationTable>,
     /// Damping of contacts.
-    pub contact_damping: Option<contact_damping::Table>,
+    pub contact_damping: Option<contact_damping::ContactDampingTable>,
     /// Damping of the rings.
-    pub rayleigh_damping: Option<rayleigh_damping::Table>,
+    pub rayleigh_damping: Option<rayleigh_damping::RayleighDampingTable>,
     /// Spring that presses the outer ring along the axis.
-    pub spring_preload: Option<spring_preload::Table>,
+    pub spring_preload: Option<spring_preload::SpringPreloadTable>,
     /// A mass off the axis of shaft and inner ring.
-    pub unbalance: Option<unbalance::Table>,
+    pub unbalance: Option<unbalance::UnbalanceTable>,
     /// Traction of free balls.
-    pub traction: Option<traction::Table>,
+    pub traction: Option<traction::TractionTable>,
     /// Drag on free balls.
-    pub ball_drag: Option<ball_drag::Table>,
+    pub ball_drag: Option<ball_drag::BallDragTable>,
     /// Interference of the rings with shaft and housing.
-    pub fit: Option<fit::Table>,
+    pub fit: Option<fit::FitTable>,
     /// Temperatures of all bodies.
-    pub temperature: Option<temperature::Table>,
+    pub temperature: Option<temperature::TemperatureTable>,
     /// Seats that are not round.
-    pub seat_form: Option<seat_form::Table>,
+    pub seat_form: Option<seat_form::SeatFormTable>,
 }
 
 impl Effects {
     /// Every effect there is, in the order of the fields, with or without its table.
-    pub fn list(&self) -> Vec<&dyn Entry> {
+    pub fn list(&self) -> Vec<&dyn EffectEntry> {
         // Without `..`: a field that is not in the list does not compile.
         let Effects {
             axial_force,
@@ -135,7 +135,7 @@ impl Effects {
     }
 
     /// The effects that the scene has.
-    fn on(&self) -> impl Iterator<Item = (About, &dyn Table)> {
+    fn on(&self) -> impl Iterator<Item = (About, &dyn EffectTable)> {
         let entries = self.list().into_iter();
         entries.filter_map(|entry| Some((entry.about(), entry.table()?)))
     }

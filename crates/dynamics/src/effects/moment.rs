@@ -17,7 +17,7 @@ schedule.harmonic = { frequency = "50 Hz" }     # optional: its factor over time
 /// The table of a scene.
 #[derive(Clone, Debug, Deserialize, PartialEq)]
 #[serde(deny_unknown_fields, expecting = "the table [effects.moment]")]
-pub struct Table {
+pub struct MomentTable {
     /// Moment about x.
     pub x: Quantity<MOMENT>,
     /// Moment about y.
@@ -25,7 +25,7 @@ pub struct Table {
     schedule: Option<RawSchedule>,
 }
 
-impl table::Table for Table {
+impl table::EffectTable for MomentTable {
     fn about() -> About {
         About {
             name: "moment",
@@ -46,7 +46,7 @@ impl table::Table for Table {
     fn load(&self, _setting: Setting<'_>) -> Result<Option<Box<dyn Effect>>, DynamicsError> {
         Ok(Some(Box::new(Moment {
             value: [self.x.si(), self.y.si()],
-            schedule: table::Table::schedule(self),
+            schedule: table::EffectTable::schedule(self),
         })))
     }
 

@@ -20,7 +20,7 @@ schedule.step = { at = "1 ms" }     # optional: its factor over time
 /// The table of a scene.
 #[derive(Clone, Debug, Deserialize, PartialEq)]
 #[serde(deny_unknown_fields, expecting = "the table [effects.radial_force]")]
-pub struct Table {
+pub struct RadialForceTable {
     /// Size; negative points the other way.
     pub value: Quantity<FORCE>,
     /// Azimuth it points to, from +x towards +y.
@@ -28,7 +28,7 @@ pub struct Table {
     schedule: Option<RawSchedule>,
 }
 
-impl table::Table for Table {
+impl table::EffectTable for RadialForceTable {
     fn about() -> About {
         About {
             name: "radial_force",
@@ -49,13 +49,13 @@ impl table::Table for Table {
         Ok(Some(Box::new(RadialForce {
             value: self.value.si(),
             direction: self.direction.si(),
-            schedule: table::Table::schedule(self),
+            schedule: table::EffectTable::schedule(self),
         })))
     }
 
     fn peak_load(&self, _speed: f64) -> PeakLoad {
         PeakLoad {
-            radial: self.value.si().abs() * table::Table::schedule(self).peak(),
+            radial: self.value.si().abs() * table::EffectTable::schedule(self).peak(),
             ..PeakLoad::default()
         }
     }

@@ -16,12 +16,12 @@ stiffness = "1e-7 s"            # factor of the stiffness matrix
 /// The table of a scene.
 #[derive(Clone, Debug, Deserialize, PartialEq)]
 #[serde(deny_unknown_fields, expecting = "the table [effects.rayleigh_damping]")]
-pub struct Table {
+pub struct RayleighDampingTable {
     mass: Quantity<RATE>,
     stiffness: Quantity<TIME>,
 }
 
-impl table::Table for Table {
+impl table::EffectTable for RayleighDampingTable {
     fn about() -> About {
         About {
             name: "rayleigh_damping",

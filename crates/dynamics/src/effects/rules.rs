@@ -119,10 +119,10 @@ impl Case<'_> {
     /// Radii of the bottom of a ring's groove and of its seat, m.
     pub fn radii(&self, side: Side) -> (f64, f64) {
         let geometry = &self.model.geometry;
-        match side {
-            Side::Inner => (0.5 * geometry.inner_raceway_diameter, 0.5 * self.bore_diameter),
-            Side::Outer => (0.5 * geometry.outer_raceway_diameter, 0.5 * self.outside_diameter),
-        }
+        side.choose(
+            (0.5 * geometry.inner_raceway_diameter, 0.5 * self.bore_diameter),
+            (0.5 * geometry.outer_raceway_diameter, 0.5 * self.outside_diameter),
+        )
     }
 
     /// Mass of the inner ring, about, kg.

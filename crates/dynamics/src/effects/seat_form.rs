@@ -31,7 +31,7 @@ const MOST_AMPLITUDE: f64 = 0.005;
 /// The tables of a scene.
 #[derive(Clone, Debug, Deserialize, PartialEq)]
 #[serde(transparent)]
-pub struct Table(Vec<RawForm>);
+pub struct SeatFormTable(Vec<RawForm>);
 
 /// One wave.
 #[derive(Clone, Debug, Deserialize, PartialEq)]
@@ -43,7 +43,7 @@ struct RawForm {
     azimuth: Option<Quantity<ANGLE>>,
 }
 
-impl table::Table for Table {
+impl table::EffectTable for SeatFormTable {
     fn about() -> About {
         About {
             name: "seat_form",

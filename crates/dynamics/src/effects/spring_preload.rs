@@ -42,13 +42,13 @@ const MAX_MASS: f64 = 1e5;
 /// The table of a scene.
 #[derive(Clone, Debug, Deserialize, PartialEq)]
 #[serde(deny_unknown_fields, expecting = "the table [effects.spring_preload]")]
-pub struct Table {
+pub struct SpringPreloadTable {
     force: Quantity<FORCE>,
     stiffness: Option<Quantity<STIFFNESS>>,
     mass: Option<Quantity<MASS>>,
 }
 
-impl table::Table for Table {
+impl table::EffectTable for SpringPreloadTable {
     fn about() -> About {
         About {
             name: "spring_preload",

@@ -141,9 +141,10 @@ impl SteadyBalls {
         };
         let (sin, cos) = azimuth.sin_cos();
         let [r, t, z] = rolls.turning;
+        let [inner, outer] = Side::BOTH.map(contact);
         FreeBallResult {
-            inner: contact(Side::Inner),
-            outer: contact(Side::Outer),
+            inner,
+            outer,
             omega_rad_per_s: [r * cos - t * sin, r * sin + t * cos, z],
             orbit_rad_per_s: rolls.orbit,
         }

@@ -1,8 +1,8 @@
 //! What every table `[effects.NAME]` of a scene says of itself: its checks, the slots of the bearing that it fills,
 //! when it matters, and how its price is found.
 //!
-//! A slot is a place where the bearing takes what effects bring. Each is a method of [`Table`] that brings nothing
-//! unless a table says otherwise:
+//! A slot is a place where the bearing takes what effects bring. Each is a method of [`EffectTable`] that brings
+//! nothing unless a table says otherwise:
 //!
 //! | slot | method | who reads it |
 //! |---|---|---|
@@ -137,7 +137,7 @@ pub struct RingDamping {
 }
 
 /// A table of a scene.
-pub trait Table {
+pub trait EffectTable {
     /// What is known without a scene.
     fn about() -> About
     where
@@ -189,24 +189,24 @@ pub trait Table {
 }
 
 /// A table that a scene may have.
-pub trait Entry {
+pub trait EffectEntry {
     /// What is known of it.
     fn about(&self) -> About;
 
     /// The table, if the scene has it.
-    fn table(&self) -> Option<&dyn Table>;
+    fn table(&self) -> Option<&dyn EffectTable>;
 
     /// Its rule of thumb.
     fn advice(&self, case: &Case<'_>) -> Vec<String>;
 }
 
-impl<T: Table> Entry for Option<T> {
+impl<T: EffectTable> EffectEntry for Option<T> {
     fn about(&self) -> About {
         T::about()
     }
 
-    fn table(&self) -> Option<&dyn Table> {
-        self.as_ref().map(|table| table as &dyn Table)
+    fn table(&self) -> Option<&dyn EffectTable> {
+        self.as_ref().map(|table| table as &dyn EffectTable)
     }
 
     fn advice(&self, case: &Case<'_>) -> Vec<String> {

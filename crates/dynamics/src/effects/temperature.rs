@@ -46,7 +46,7 @@ const PLAUSIBLE_CELSIUS: std::ops::RangeInclusive<f64> = -200.0..=350.0;
 /// The table of a scene.
 #[derive(Clone, Debug, Deserialize, PartialEq)]
 #[serde(deny_unknown_fields, expecting = "the table [effects.temperature]")]
-pub struct Table {
+pub struct TemperatureTable {
     inner: BodyTemperature,
     outer: BodyTemperature,
     balls: BodyTemperature,
@@ -90,7 +90,7 @@ enum Over {
     Radius(RadialProfile),
 }
 
-impl table::Table for Table {
+impl table::EffectTable for TemperatureTable {
     fn about() -> About {
         About {
             name: "temperature",

@@ -72,7 +72,7 @@ const HIRANO: f64 = 10.0;
 /// The table of a scene.
 #[derive(Clone, Debug, Deserialize, PartialEq)]
 #[serde(deny_unknown_fields, expecting = "the table [effects.traction]")]
-pub struct Table {
+pub struct TractionTable {
     law: Law,
     friction: Option<f64>,
     at_rest: Option<f64>,
@@ -108,7 +108,7 @@ enum CreepName {
     Elastic,
 }
 
-impl table::Table for Table {
+impl table::EffectTable for TractionTable {
     fn about() -> About {
         About {
             name: "traction",
@@ -174,7 +174,7 @@ impl table::Table for Table {
     }
 }
 
-impl Table {
+impl TractionTable {
     fn check_law(&self, has_lubricant: bool, problems: &mut Problems) {
         let points = [&self.at_rest, &self.most, &self.at_large];
         let has_points = points.iter().any(|x| x.is_some()) || self.slip_of_most.is_some();

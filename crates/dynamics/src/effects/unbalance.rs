@@ -7,8 +7,9 @@
 //! ```
 //!
 //! Omega the speed of the inner ring and A its acceleration. Off the plane of the inner groove centres it also tilts,
-//! by position e_z x F. The mass itself is part of `shaft.mass`; its motion with the shaft is the shaft's own inertia
-//! (e.g. Genta, Dynamics of Rotating Systems, 2005, ch. 2: the Jeffcott rotor).
+//! by position e_z x F; on the shaft of a list of bearings it pulls where it is. The mass itself is part of
+//! `shaft.mass`; its motion with the shaft is the shaft's own inertia (e.g. Genta, Dynamics of Rotating Systems, 2005,
+//! ch. 2: the Jeffcott rotor).
 //!
 //! The mean over a step of a motion is exact for any course of the speed: it is the change of m e d/dt (cos psi, sin
 //! psi) over the step, so shaft and mass together keep their momentum to round-off. An equilibrium has the force of
@@ -33,7 +34,8 @@ const EXAMPLE: &str = r#"[effects.unbalance]             # needs [speed]
 mass = "10 g"                   # a mass off the axis; it is part of shaft.mass
 eccentricity = "5 mm"           # its distance from the axis: together 50 g mm
 angle = "0 deg"                 # optional: its azimuth on the inner ring at t = 0, from +x towards +y; default 0
-position = "0 mm"               # optional: where on the axis, from the plane of the inner groove centres; default 0
+position = "0 mm"               # optional: where on the axis, from the plane of the inner groove centres, or along
+                                # the shaft of a list of bearings; default 0
 "#;
 
 /// A heavier mass off the axis is a slip of the unit, kg.
@@ -46,21 +48,26 @@ const QUALITY: f64 = 2.5e-3;
 /// The table of a scene.
 #[derive(Clone, Debug, Deserialize, PartialEq)]
 #[serde(deny_unknown_fields, expecting = "the table [effects.unbalance]")]
-pub struct Table {
+pub struct UnbalanceTable {
     mass: Quantity<MASS>,
     eccentricity: Quantity<LENGTH>,
     angle: Option<Quantity<ANGLE>>,
     position: Option<Quantity<LENGTH>>,
 }
 
-impl Table {
+impl UnbalanceTable {
+    /// Where on the axis it is, m: from the plane of the inner groove centres, or along the shaft of several bearings.
+    pub fn position(&self) -> f64 {
+        self.position.as_ref().map_or(0.0, Quantity::si)
+    }
+
     /// Mass times eccentricity, kg m.
     fn moment(&self) -> f64 {
         self.mass.si() * self.eccentricity.si()
     }
 }
 
-impl table::Table for Table {
+impl table::EffectTable for UnbalanceTable {
     fn about() -> About {
         About {
             name: "unbalance",
@@ -127,7 +134,7 @@ impl table::Table for Table {
             speed: setting.speeds.inner.clone(),
             moment: self.moment(),
             angle: self.angle.as_ref().map_or(0.0, Quantity::si),
-            position: self.position.as_ref().map_or(0.0, Quantity::si),
+            position: self.position(),
         })))
     }
 
@@ -212,14 +219,14 @@ mod tests {
             has_lubricant: false,
         };
         let messages = |mass: &str, eccentricity: &str, position: &str| {
-            let table = Table {
+            let table = UnbalanceTable {
                 mass: mass.parse().unwrap(),
                 eccentricity: eccentricity.parse().unwrap(),
                 angle: None,
                 position: Some(position.parse().unwrap()),
             };
             let mut problems = Problems::default();
-            table::Table::check(&table, context, &mut problems);
+            table::EffectTable::check(&table, context, &mut problems);
             problems.into_texts()
         };
         assert!(messages("10 g", "5 mm", "-80 mm").is_empty());

@@ -10,6 +10,7 @@
 
 use contact::law::BallForces;
 use contact::{BallLaws, ContactLaw};
+use serde::Deserialize;
 
 /// Relative change of the approach below which the mean force is integrated instead of differenced: the difference
 /// would lose digits, and three Gauss points are exact to round-off there.
@@ -21,13 +22,15 @@ pub(super) const GAUSS: [(f64, f64); 3] = [
     (0.887_298_334_620_741_7, 5.0 / 18.0),
 ];
 
-/// How forces are evaluated over a step.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// How contact forces are evaluated over a step.
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq)]
+#[serde(rename_all = "snake_case")]
 pub enum ContactScheme {
     /// Energy-conserving mean force, plus (1/2 - weight) times its change over the step: the force at the weighted
     /// time of an integrator that dissipates. V is convex, so this term only takes energy.
     DiscreteGradient,
-    /// (1 - weight) times the force at the end plus `weight` times the force at the start.
+    /// (1 - weight) times the force at the end plus `weight` times the force at the start: for comparison, it feeds
+    /// energy into contacts that open.
     Pointwise,
 }
 

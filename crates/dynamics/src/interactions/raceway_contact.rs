@@ -20,7 +20,7 @@ use crate::model::Model;
 use crate::mounting::Mounting;
 use crate::surfaces::{Strips, SurfacePlace};
 use crate::system::{
-    Body, CarriedCircle, Character, Circle, Interaction, Lengths, Link, LinkForces, LinkRows, LinkTerm,
+    BodyId, CarriedCircle, Character, Circle, Interaction, Lengths, Link, LinkForces, LinkRows, LinkTerm,
 };
 
 /// One ball on one raceway.
@@ -388,26 +388,26 @@ impl RacewayContacts {
 
 /// The contacts of a ball as a link with their lengths, inner first: l = reach + ball - groove centre.
 fn link(sites: &BallSites, ball: usize, rings: &[GrooveBodies; 2]) -> Link {
-    let body = Body::Lumped(ball);
+    let body = BodyId::Lumped(ball);
     let mut terms = vec![
         LinkTerm::new(body, 0, [1.0, 0.0, 1.0, 0.0]),
         LinkTerm::new(body, 1, [0.0, 1.0, 0.0, 1.0]),
     ];
     let mut reach = LinkRows::default();
     for (site, ring) in sites.iter().zip(rings) {
-        let of_side = |[radial, axial]: [f64; 2]| match site.side {
-            Side::Inner => [radial, axial, 0.0, 0.0],
-            Side::Outer => [0.0, 0.0, radial, axial],
+        let of_side = |[radial, axial]: [f64; 2]| {
+            let side = site.side;
+            side.choose([radial, axial, 0.0, 0.0], [0.0, 0.0, radial, axial])
         };
         if let Some(elastic) = ring.elastic {
-            let body = Body::Elastic(elastic);
+            let body = BodyId::Elastic(elastic);
             terms.push(LinkTerm::new(body, 2 * site.ball, of_side([-1.0, 0.0])));
             terms.push(LinkTerm::new(body, 2 * site.ball + 1, of_side([0.0, -1.0])));
         }
         if let Some(carrier) = ring.carrier {
             let rows = site.carrier_rows().into_iter().enumerate();
             terms.extend(
-                rows.map(|(dof, row)| LinkTerm::new(Body::Lumped(carrier), dof, of_side(row.map(|r| -r)))),
+                rows.map(|(dof, row)| LinkTerm::new(BodyId::Lumped(carrier), dof, of_side(row.map(|r| -r)))),
             );
         }
         let held = ring.held.get(site.ball).copied().unwrap_or_default();

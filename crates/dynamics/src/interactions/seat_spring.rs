@@ -7,7 +7,7 @@
 
 use timer::SharedLaps;
 
-use crate::system::{Body, Character, Interaction, Lengths, Link, LinkForces, LinkRows, LinkTerm};
+use crate::system::{BodyId, Character, Interaction, Lengths, Link, LinkForces, LinkRows, LinkTerm};
 
 /// A seat of the outer ring that slides along the axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -32,7 +32,7 @@ pub struct SeatSpring {
 impl SeatSpring {
     /// The spring of a seat whose coordinate z is that of a lumped body.
     pub fn new(seat: Seat, body: usize, weight: f64) -> SeatSpring {
-        let terms = vec![LinkTerm::new(Body::Lumped(body), 2, [1.0])];
+        let terms = vec![LinkTerm::new(BodyId::Lumped(body), 2, [1.0])];
         SeatSpring {
             seat,
             weight,

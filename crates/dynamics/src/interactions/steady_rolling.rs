@@ -25,6 +25,7 @@ use dense::DenseLu;
 
 use super::traction::creep::RollingContact;
 use super::traction::{Ellipse, PatchPoints, Resultant, Slip, Traction};
+use crate::model::BallInertia;
 
 /// A contact of a ball that rolls steadily.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -50,8 +51,8 @@ pub struct SteadyContact {
 pub struct SteadyBall<'t> {
     /// Distance from the axis, m.
     pub out: f64,
-    /// Mass, kg, and moment of inertia, kg m^2.
-    pub inertia: [f64; 2],
+    /// Its inertia.
+    pub inertia: BallInertia,
     /// Drag over the square of the speed, N s^2/m^2.
     pub drag: f64,
     /// Its contacts, inner first.
@@ -252,7 +253,7 @@ impl SteadyBall<'_> {
                 }
             }
         }
-        let [_, moment] = self.inertia;
+        let moment = self.inertia.moment;
         let [orbit, radial, rolling, _] = *y;
         let speed = orbit * self.out;
         sum[0] -= self.drag * speed.abs() * speed * self.out;
@@ -283,7 +284,7 @@ impl SteadyBall<'_> {
 
     /// Steps of the ball's inertia towards the steady state from `y`.
     fn step_on(&self, mut y: [f64; N], small: [f64; 2], held: bool) -> Result<[f64; N], f64> {
-        let [mass, moment] = self.inertia;
+        let BallInertia { mass, moment } = self.inertia;
         let inertia = [mass * self.out * self.out, moment, moment, moment];
         let (mut residual, mut slope) = self.residual(&y, small);
         let mut now = self.size(&residual, held);

@@ -8,7 +8,7 @@ use timer::SharedLaps;
 use super::columns::{LengthGrowth, LinkTangent};
 use crate::bearing::{BearingParts, FIRST_BALL, lengths};
 use crate::solution::StaticSolution;
-use crate::system::{Body, FiniteMotion, Link, LinkTerm, N_FINITE};
+use crate::system::{BodyId, FiniteMotion, Link, LinkTerm, N_FINITE};
 
 /// A coordinate of a lumped body that carries a rigid ring, and its motion by small dofs.
 pub struct RingCarrier {
@@ -63,11 +63,12 @@ impl VibratingLinks<'_> {
     /// What moves one length of a link. What carries a ring has its dofs by body among the small ones, or in the motion
     /// of a flexible ring, which has that of its partner in it.
     fn growth(&self, link: &Link, row: usize, finite: &Option<FiniteMotion>) -> LengthGrowth {
-        let is_elastic = |term: &LinkTerm| matches!(term.body, Body::Elastic(_));
+        let is_elastic = |term: &LinkTerm| matches!(term.body, BodyId::Elastic(_));
         let is_ring = link.terms.iter().any(is_elastic);
         let mut growth = LengthGrowth::default();
         for term in link.terms.iter().filter(|term| term.rows[row] != 0.0) {
-            let follows = is_ring && matches!(term.body, Body::Lumped(body) if self.carried(body).is_some());
+            let follows =
+                is_ring && matches!(term.body, BodyId::Lumped(body) if self.carried(body).is_some());
             if !follows {
                 self.add(&mut growth, (term.body, term.coordinate), term.rows[row]);
             }
@@ -108,7 +109,7 @@ impl VibratingLinks<'_> {
         if let Some(loads) = self.parts.shaft.tilted {
             add(-1.0, loads.slopes([tilt_x, tilt_y]));
         }
-        let growth = |coordinate: (Body, usize)| {
+        let growth = |coordinate: (BodyId, usize)| {
             let mut growth = LengthGrowth::default();
             self.add(&mut growth, coordinate, 1.0);
             growth
@@ -126,9 +127,9 @@ impl VibratingLinks<'_> {
     }
 
     /// Adds `value` times the motion of a coordinate.
-    fn add(&self, growth: &mut LengthGrowth, (body, coordinate): (Body, usize), value: f64) {
+    fn add(&self, growth: &mut LengthGrowth, (body, coordinate): (BodyId, usize), value: f64) {
         match body {
-            Body::Lumped(number) => {
+            BodyId::Lumped(number) => {
                 let Some(side) = self.carried(number) else {
                     let place = self.first_ball + 2 * (number - FIRST_BALL) + coordinate;
                     return growth.small.push((place, value));
@@ -145,7 +146,7 @@ impl VibratingLinks<'_> {
                     growth.add_ring(group, load, value);
                 }
             }
-            Body::Elastic(number) => {
+            BodyId::Elastic(number) => {
                 let of = |side: &Side| self.parts.elastic(*side) == Some(number);
                 let found = Side::BOTH.into_iter().find(of);
                 let Some((side, (group, ring))) = found.and_then(|s| Some((s, self.rings[s.index()]?)))

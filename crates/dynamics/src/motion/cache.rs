@@ -12,6 +12,7 @@ use ring::{Ended, Known, KnownLoad};
 use super::run::Motion;
 use super::span::PartSpan;
 use super::state::MotionState;
+use super::state::PatchPlace;
 use crate::effects::Loads;
 use crate::error::DynamicsError;
 use crate::frame::turn_nodal;
@@ -43,8 +44,8 @@ pub(super) struct ExpectedLoads {
     motion: Arc<()>,
     /// The part.
     pub span: PartSpan,
-    /// Contact angle, rad, and force, N, with which they were evaluated, by site.
-    pub places: Vec<[f64; 2]>,
+    /// Places of the contacts with which they were evaluated, by site.
+    pub places: Vec<PatchPlace>,
     pub loads: Loads,
 }
 
@@ -52,7 +53,7 @@ impl Motion<'_> {
     /// Loads of a part of a step with contacts expected at `places`.
     pub(super) fn expected_loads(
         &self,
-        places: Vec<[f64; 2]>,
+        places: Vec<PatchPlace>,
         span: PartSpan,
     ) -> Result<Arc<ExpectedLoads>, DynamicsError> {
         let loads = self.loads_at(&places, self.weighted_time(span), span.dt)?;

@@ -110,10 +110,7 @@ impl Motion<'_> {
     ) -> LandStep {
         let ring = RingStep {
             spin: self.ring_speeds(land.side, span),
-            ..match land.side {
-                Side::Inner => shaft,
-                Side::Outer => RingStep::default(),
-            }
+            ..land.side.choose(shaft, RingStep::default())
         };
         let h = land.width * (end as f64 - 0.5);
         let step = LandStep {

@@ -12,7 +12,7 @@ use super::run::Motion;
 use super::solve::StepSolution;
 use super::span::PartSpan;
 use super::state::MotionState;
-use super::substep::Part;
+use super::substep::StepPart;
 use crate::costs::{FRAME, UPDATE};
 use crate::error::DynamicsError;
 
@@ -26,7 +26,7 @@ impl Motion<'_> {
     pub(super) fn close(
         &self,
         state: &MotionState,
-        part: &mut Part<'_>,
+        part: &mut StepPart<'_>,
         solution: &StepSolution,
         upcoming: Option<PartSpan>,
     ) -> Result<Option<RingEnds>, DynamicsError> {
@@ -50,19 +50,15 @@ impl Motion<'_> {
             }
         }
         let next = self.look_ahead(state, part, solution, upcoming);
-        let [inner, outer] = &mut part.rings;
         let end = |step: &mut Option<Box<dyn ElasticStep + '_>>, side: Side| {
             let step = step.as_mut()?;
             let next = next.as_ref().map(|next| self.known_load(side, next));
             Some(step.end(forces[side.index()].at_ports(), scale, next))
         };
-        let (inner, outer) = self
-            .model
-            .backend
-            .both(|| end(inner, Side::Inner), || end(outer, Side::Outer));
+        let ends = self.model.backend.with_sides(part.rings.each_mut(), end);
         part.report.laps.add(UPDATE, part.clock.lap());
         let mut rings = [None, None];
-        for (ring, end) in rings.iter_mut().zip([inner, outer]) {
+        for (ring, end) in rings.iter_mut().zip(ends) {
             match end {
                 Some(End::Done(ended)) => *ring = Some(*ended),
                 Some(End::Again) => {
@@ -85,7 +81,7 @@ impl Motion<'_> {
     fn look_ahead(
         &self,
         state: &MotionState,
-        part: &Part<'_>,
+        part: &StepPart<'_>,
         solution: &StepSolution,
         upcoming: Option<PartSpan>,
     ) -> Option<Arc<ExpectedLoads>> {
@@ -96,7 +92,7 @@ impl Motion<'_> {
     }
 
     /// Whether the inertia of a frame is found by rounds: of a ring's, or of a body on the shaft.
-    fn has_turning_frames(&self, part: &Part<'_>) -> bool {
+    fn has_turning_frames(&self, part: &StepPart<'_>) -> bool {
         let time = self.weighted_time(part.span);
         let of_body = |side: Side| self.body_turn(side, time).is_some();
         let frames = &part.expected.loads.frames;
@@ -104,7 +100,7 @@ impl Motion<'_> {
     }
 
     /// Speed of the frame that turns fastest, rad/s.
-    fn fastest(&self, part: &Part<'_>) -> f64 {
+    fn fastest(&self, part: &StepPart<'_>) -> f64 {
         let time = self.weighted_time(part.span);
         let bodies = Side::BOTH.map(|side| self.body_turn(side, time));
         let turns = part.expected.loads.frames.iter().chain(&bodies).flatten();
@@ -113,7 +109,7 @@ impl Motion<'_> {
     }
 
     /// Counts a round and hands the new predictors to the system.
-    fn next_round(&self, part: &mut Part<'_>) -> Result<(), DynamicsError> {
+    fn next_round(&self, part: &mut StepPart<'_>) -> Result<(), DynamicsError> {
         part.report.frame_rounds += 1;
         if part.report.frame_rounds > MAX_FRAME_ROUNDS {
             return Err(DynamicsError::FrameNotSettled {

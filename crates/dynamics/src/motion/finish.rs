@@ -114,12 +114,12 @@ impl Motion<'_> {
 
     /// Energies of a state whose rings have those found anew.
     pub(super) fn measure_energies(&self, state: &mut MotionState) {
-        let energies = |i: usize| match (&self.rings[i], &state.rings[i]) {
+        let energies = |side: Side| match (&self.rings[side.index()], &state.rings[side.index()]) {
             (Some(moving), Some(ring)) => moving.body.energies(ring),
             _ => [0.0; 2],
         };
-        let (inner, outer) = self.model.backend.both(|| energies(0), || energies(1));
-        self.note_energies(state, [inner, outer]);
+        let energies = self.model.backend.on_sides(energies);
+        self.note_energies(state, energies);
     }
 
     /// Kinetic and strain energies of a state, of which those of the rings are known.

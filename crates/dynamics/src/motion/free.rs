@@ -124,7 +124,8 @@ impl Motion<'_> {
                 time,
                 azimuths: balls.map(|ball| self.ball_azimuth(ball, time)).collect(),
                 is_free: false,
-                ends: [span.at(0.0), span.at(1.0)],
+                start: span.at(0.0),
+                end: span.at(1.0),
             };
         };
         let half = 0.5 * span.dt;
@@ -134,7 +135,8 @@ impl Motion<'_> {
                 .map(|ball| free.azimuth(ball) + half * free.orbit(ball))
                 .collect(),
             is_free: true,
-            ends: [span.at(0.0), span.at(1.0)],
+            start: span.at(0.0),
+            end: span.at(1.0),
         }
     }
 
@@ -156,7 +158,7 @@ impl Motion<'_> {
             velocity: free.velocities[ball],
             turning: free.turnings[ball],
             trend: [0, 1].map(|k| std::array::from_fn(|i| free.trends[ball][3 * k + i])),
-            load: fall.map(|a| inertia[0] * a),
+            load: fall.map(|a| inertia.mass * a),
             drag: self
                 .model
                 .effects

@@ -3,6 +3,7 @@
 use super::cage_state::CageState;
 use super::ring_course::RingCourse;
 use crate::interactions::traction::Slip;
+use crate::model::BallInertia;
 
 /// Free balls: places, velocities and angular velocities in space, and what their contacts report.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -136,8 +137,8 @@ impl FreeState {
         vectors + cage + courses + track + self.contacts.iter().flat_map(|c| c.to_row()).sum::<f64>()
     }
 
-    /// Kinetic energy of all balls of this mass and moment of inertia, J.
-    pub fn kinetic(&self, [mass, moment]: [f64; 2]) -> f64 {
+    /// Kinetic energy of all balls of this inertia, J.
+    pub fn kinetic(&self, BallInertia { mass, moment }: BallInertia) -> f64 {
         let square = |v: &[f64; 3]| v.iter().map(|x| x * x).sum::<f64>();
         let pairs = self.velocities.iter().zip(&self.turnings);
         pairs

@@ -15,7 +15,7 @@ use super::run::Motion;
 use super::solve::{StepSolution, policy};
 use super::span::PartSpan;
 use super::state::{MotionState, StepReport};
-use super::substep::Part;
+use super::substep::StepPart;
 use crate::bearing::BearingParts;
 use crate::condensation::condensed;
 use crate::costs::NEWTON;
@@ -29,7 +29,7 @@ use crate::system::newton::{KeptTangent, Policy};
 pub struct HeldPart<'m> {
     motion: &'m Motion<'m>,
     state: &'m MotionState,
-    part: Part<'m>,
+    part: StepPart<'m>,
     solution: StepSolution,
     /// Newton's tangent of the last answer; None where contacts have moved since.
     tangent: Option<KeptTangent>,

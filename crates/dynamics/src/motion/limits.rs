@@ -6,6 +6,7 @@ use contact::patch_shape::is_truncated;
 use super::run::{Motion, MovingRing};
 use super::state::MotionState;
 use crate::footprint::loaded;
+use crate::footprint::sizes;
 use crate::solution::STATIC_LIMIT;
 use crate::surfaces::EllipseKind;
 
@@ -16,11 +17,17 @@ pub enum ContactLimit {
     Edge,
     /// The peak pressure exceeds the static limit of bearing steel (ISO 76, 4.2 GPa).
     StaticPressure,
+    /// A ball carries on the shoulder that an angular contact bearing does not have.
+    WrongShoulder,
 }
 
 impl ContactLimit {
     /// All limits.
-    pub const ALL: [ContactLimit; 2] = [ContactLimit::Edge, ContactLimit::StaticPressure];
+    pub const ALL: [ContactLimit; 3] = [
+        ContactLimit::Edge,
+        ContactLimit::StaticPressure,
+        ContactLimit::WrongShoulder,
+    ];
 }
 
 /// A contact beyond a limit.
@@ -39,7 +46,7 @@ pub struct Exceeded {
 impl Motion<'_> {
     /// Contacts beyond a limit: mean forces of the last step, contact angles at its end.
     pub fn exceeded(&self, state: &MotionState) -> Vec<Exceeded> {
-        let carries = loaded(&state.forces);
+        let carries = loaded(sizes(&state.forces));
         let mut found = Vec::new();
         for (index, force) in state.forces.iter().enumerate().filter(|(i, _)| carries[*i]) {
             let (ball, side) = (index / 2, Side::BOTH[index % 2]);
@@ -60,13 +67,21 @@ impl Motion<'_> {
                 |moving: &MovingRing| is_truncated(&moving.raceway.surface, state.angles[index], axes);
             let is_beyond = match self.model.surfaces.edges(side) {
                 Some(_) => bearing.is_some_and(|bearing| bearing.kind == EllipseKind::Edge),
-                None => self.rings[side.index()].as_ref().is_some_and(beyond),
+                None => {
+                    let reach = axes[0] / self.model.geometry.groove_radius(side);
+                    let shoulders = &self.model.shoulders;
+                    self.rings[side.index()].as_ref().is_some_and(beyond)
+                        || shoulders.is_beyond(side, state.angles[index], reach)
+                }
             };
             if is_beyond {
                 add(ContactLimit::Edge);
             }
             if pressure > STATIC_LIMIT {
                 add(ContactLimit::StaticPressure);
+            }
+            if self.model.shoulders.is_against(state.angles[index]) {
+                add(ContactLimit::WrongShoulder);
             }
         }
         found

@@ -52,4 +52,4 @@ pub use ring_course::RingCourse;
 pub use run::{Motion, check_supported};
 pub use shape::{RingShape, StateShape};
 pub use span::PartSpan;
-pub use state::{Ladder, MotionSettings, MotionState, StepReport};
+pub use state::{Ladder, MotionSettings, MotionState, PatchPlace, StepReport};

@@ -9,6 +9,7 @@ use super::run::Motion;
 use super::solve::StepSolution;
 use super::span::PartSpan;
 use super::state::MotionState;
+use super::state::PatchPlace;
 use crate::bearing::{BearingParts, ContactList, SeatStep};
 use crate::bodies::{FlatBody, FrameInertia, Inertia, Name, StepTakes};
 use crate::effects::{Loads, Now};
@@ -45,11 +46,11 @@ impl Motion<'_> {
     /// angles expected.
     pub(super) fn loads_at(
         &self,
-        places: &[[f64; 2]],
+        places: &[PatchPlace],
         time: f64,
         width: f64,
     ) -> Result<Loads, DynamicsError> {
-        let angles: Vec<f64> = places.iter().map(|p| p[0]).collect();
+        let angles: Vec<f64> = places.iter().map(|place| place.angle).collect();
         let now = Now {
             time,
             width,
@@ -76,11 +77,7 @@ impl Motion<'_> {
                 known.unwrap_or_else(|| factor.predict(old, self.known_load(side, &ahead.loads)).into());
             Some(factor.begin(old, known, self.feet(side, placing)))
         };
-        let (inner, outer) = self
-            .model
-            .backend
-            .both(|| begin(Side::Inner), || begin(Side::Outer));
-        Ok([inner, outer])
+        Ok(self.model.backend.on_sides(begin))
     }
 
     /// Where contacts meet a ring.
@@ -124,7 +121,7 @@ impl Motion<'_> {
             (0..n_kinematic)
                 .map(|ball| self.ball(state, ball, loads))
                 .collect(),
-            [ports(Side::Inner)?, ports(Side::Outer)?],
+            Side::try_both(ports)?,
             contacts,
             self.seat(state, loads),
         );

@@ -18,7 +18,7 @@ use rayon::prelude::*;
 
 use super::run::Motion;
 use super::solve::StepSolution;
-use super::state::MotionState;
+use super::state::{MotionState, PatchPlace};
 use crate::bearing::BearingParts;
 use crate::error::DynamicsError;
 use crate::footprint::{loaded, on_groove, require_on_groove};
@@ -52,8 +52,10 @@ pub(super) struct Course {
     pub azimuths: Vec<f64>,
     /// Whether contacts are those of free balls, with traction and slope.
     pub is_free: bool,
-    /// Start and end of the part, s.
-    pub ends: [f64; 2],
+    /// Start of the part, s.
+    pub start: f64,
+    /// Its end, s.
+    pub end: f64,
 }
 
 /// The mounting in the middle of a part and, where temperatures change, at its ends.
@@ -68,7 +70,7 @@ impl<'m> PartMounting<'m> {
             middle: mounting.at(course.time),
             ends: mounting
                 .changes()
-                .then(|| course.ends.map(|time| mounting.at(time))),
+                .then(|| [course.start, course.end].map(|time| mounting.at(time))),
         }
     }
 
@@ -94,13 +96,13 @@ pub(super) struct Placing {
 }
 
 impl Placing {
-    /// Whether patches placed at `wanted` (angle, rad, and force, N) lie where the contacts were `met`.
-    pub fn holds(&self, wanted: &[[f64; 2]], met: &[[f64; 2]]) -> bool {
-        let largest = met.iter().fold(0.0, |most: f64, m| most.max(m[1]));
-        let close = |((w, m), half): ((&[f64; 2], &[f64; 2]), &f64)| {
+    /// Whether patches placed at `wanted` lie where the contacts were `met`.
+    pub fn holds(&self, wanted: &[PatchPlace], met: &[PatchPlace]) -> bool {
+        let largest = met.iter().fold(0.0, |most: f64, m| most.max(m.force));
+        let close = |((w, m), half): ((&PatchPlace, &PatchPlace), &f64)| {
             half.is_infinite()
-                || ((w[0] - m[0]).abs() * m[1] <= ANGLE_TOLERANCE * half * largest
-                    && (w[1].cbrt() - m[1].cbrt()).abs() <= SIZE_TOLERANCE * largest.cbrt())
+                || ((w.angle - m.angle).abs() * m.force <= ANGLE_TOLERANCE * half * largest
+                    && (w.force.cbrt() - m.force.cbrt()).abs() <= SIZE_TOLERANCE * largest.cbrt())
         };
         wanted.iter().zip(met).zip(&self.half_angles).all(close)
     }
@@ -112,31 +114,36 @@ impl Placing {
 const EXPECTED: [f64; 3] = [2.5, -2.0, 0.5];
 
 impl MotionState {
-    /// Where the contacts of the next part are expected: contact angle, rad, and force, N, by site.
-    pub(super) fn expected_places(&self) -> Vec<[f64; 2]> {
+    /// Where the contacts of the next part are expected, by site.
+    pub(super) fn expected_places(&self) -> Vec<PatchPlace> {
         expected(self.places.each_ref().map(Vec::as_slice))
     }
 }
 
 /// The same after parts in which they lay at `places`, the last first.
-pub(super) fn expected(places: [&[[f64; 2]]; 3]) -> Vec<[f64; 2]> {
-    let sum = |site: usize, i: usize| {
-        let terms = EXPECTED.iter().zip(&places).map(|(c, part)| c * part[site][i]);
+pub(super) fn expected(places: [&[PatchPlace]; 3]) -> Vec<PatchPlace> {
+    let sum = |of: &dyn Fn(&[PatchPlace]) -> f64| {
+        let terms = EXPECTED.iter().zip(&places).map(|(c, part)| c * of(part));
         terms.sum::<f64>()
     };
-    (0..places[0].len())
-        .map(|site| [sum(site, 0), sum(site, 1).max(0.0)])
-        .collect()
+    let place = |site: usize| PatchPlace {
+        angle: sum(&|part| part[site].angle),
+        force: sum(&|part| part[site].force).max(0.0),
+    };
+    (0..places[0].len()).map(place).collect()
 }
 
 impl BearingParts {
-    /// Where the contacts of the part were at its weighted time: contact angle, rad, and force, N, by site.
-    pub(super) fn places(&self, solution: &StepSolution) -> Vec<[f64; 2]> {
+    /// Where the contacts of the part were at its weighted time, by site.
+    pub(super) fn places(&self, solution: &StepSolution) -> Vec<PatchPlace> {
         let start = self.contacts.means.map_or(0.0, |means| means.weight);
         let place = |(index, (site, force)): (usize, (&Site, &MeanForce))| {
             let [l0, l1] = solution.reach(index);
             let l = [0, 1].map(|i| site.side.sign() * (start * l0[i] + (1.0 - start) * l1[i]));
-            [l[1].atan2(l[0]), force.force[0].hypot(force.force[1])]
+            PatchPlace {
+                angle: l[1].atan2(l[0]),
+                force: force.force[0].hypot(force.force[1]),
+            }
         };
         let contacts = self.contacts.sites.iter().zip(&solution.forces);
         contacts.enumerate().map(place).collect()
@@ -144,11 +151,10 @@ impl BearingParts {
 }
 
 impl Motion<'_> {
-    /// Contacts in the middle of a part, at contact angles, rad, and with forces, N, by site.
-    pub(super) fn place(&self, places: &[[f64; 2]], course: &Course) -> Result<Placing, DynamicsError> {
-        let forces: Vec<[f64; 2]> = places.iter().map(|p| [p[1], 0.0]).collect();
+    /// Contacts in the middle of a part at their places, by site.
+    pub(super) fn place(&self, places: &[PatchPlace], course: &Course) -> Result<Placing, DynamicsError> {
         let mounting = PartMounting::new(&self.model.mounting, course);
-        let placed: Result<Vec<_>, DynamicsError> = loaded(&forces)
+        let placed: Result<Vec<_>, DynamicsError> = loaded(places.iter().map(|place| place.force))
             .into_par_iter()
             .zip(places)
             .enumerate()
@@ -174,7 +180,7 @@ impl Motion<'_> {
     fn place_contact(
         &self,
         index: usize,
-        [angle, force]: [f64; 2],
+        PatchPlace { angle, force }: PatchPlace,
         loaded: bool,
         course: &Course,
         mounting: &PartMounting<'_>,
@@ -218,11 +224,11 @@ impl Motion<'_> {
     }
 
     /// Fails when a loaded ball of a part lies beyond the rim of a flexible ring's groove.
-    pub(super) fn check_on_grooves(&self, met: &[[f64; 2]]) -> Result<(), DynamicsError> {
-        let forces: Vec<[f64; 2]> = met.iter().map(|p| [p[1], 0.0]).collect();
-        for (index, (place, loaded)) in met.iter().zip(loaded(&forces)).enumerate() {
+    pub(super) fn check_on_grooves(&self, met: &[PatchPlace]) -> Result<(), DynamicsError> {
+        let loaded = loaded(met.iter().map(|place| place.force));
+        for (index, (place, loaded)) in met.iter().zip(loaded).enumerate() {
             if let (Some(moving), true) = (&self.rings[index % 2], loaded) {
-                require_on_groove(&moving.raceway.surface, index / 2, place[0])?;
+                require_on_groove(&moving.raceway.surface, index / 2, place.angle)?;
             }
         }
         Ok(())

@@ -36,15 +36,18 @@ impl Motion<'_> {
             }
         };
         let turn = 2.0 * std::f64::consts::PI;
-        let ball = |b: usize| BallResult {
-            azimuth_rad: self.azimuth_now(state, b).rem_euclid(turn),
-            inner: contact(b, Side::Inner),
-            outer: contact(b, Side::Outer),
-            displacement_m: BallDisplacement {
-                radial: state.balls[b][0],
-                axial: state.balls[b][1],
-            },
-            free: state.free.as_ref().map(|free| self.free_result(state, free, b)),
+        let ball = |b: usize| {
+            let [inner, outer] = Side::BOTH.map(|side| contact(b, side));
+            BallResult {
+                azimuth_rad: self.azimuth_now(state, b).rem_euclid(turn),
+                inner,
+                outer,
+                displacement_m: BallDisplacement {
+                    radial: state.balls[b][0],
+                    axial: state.balls[b][1],
+                },
+                free: state.free.as_ref().map(|free| self.free_result(state, free, b)),
+            }
         };
         (0..self.model.geometry.n_balls).map(ball).collect()
     }
@@ -148,14 +151,14 @@ impl Motion<'_> {
             let index = 2 * ball + side.index();
             let force = state.forces[index][0].hypot(state.forces[index][1]);
             let azimuth = self.azimuth_now(state, ball) - self.frame_angle(side, time);
-            let [patch_angle, load] = state.places[0][index];
+            let place = state.places[0][index];
             let least = self.model.contact.least_patch;
-            let patch_angle = on_groove(&moving.raceway.surface, patch_angle, force > 0.0);
+            let patch_angle = on_groove(&moving.raceway.surface, place.angle, force > 0.0);
             let shape = PatchShape::new(
                 &moving.raceway.surface,
                 azimuth,
                 patch_angle,
-                hertz.semi_axes(load),
+                hertz.semi_axes(place.force),
                 least,
             )?;
             Ok(LoadedPatch {
@@ -239,7 +242,8 @@ impl Motion<'_> {
                 .map(|ball| self.ball_azimuth(ball, time))
                 .collect(),
             is_free: false,
-            ends: [time; 2],
+            start: time,
+            end: time,
         };
         let feet = self.place(&to.places[0], &course)?.feet;
         let i = side.index();

@@ -79,9 +79,7 @@ impl<'a> Motion<'a> {
             };
             model.ring(side).map(moving).transpose()
         };
-        let (inner, outer) = model
-            .backend
-            .try_both(|| build(Side::Inner), || build(Side::Outer))?;
+        let [inner, outer] = model.backend.try_on_sides(build)?;
         let turning = wobbles(model, &settings.speeds).then(|| {
             // A ring on a body turns where it sits.
             let on_shaft = |ring: &&MovingRing| ring.body.tied().is_none_or(|body| body.on_shaft().is_none());
@@ -115,15 +113,11 @@ impl<'a> Motion<'a> {
             integrator: self.settings.integrator,
             dt,
         };
-        let build = |ring: &Option<MovingRing>| {
+        let build = |side: Side| {
             let factor = |ring: &MovingRing| ring.body.clone().step_factor(scheme);
-            ring.as_ref().map(factor).transpose()
+            self.rings[side.index()].as_ref().map(factor).transpose()
         };
-        let (inner, outer) = self
-            .model
-            .backend
-            .try_both(|| build(&self.rings[0]), || build(&self.rings[1]))?;
-        let rung = [inner, outer];
+        let rung = self.model.backend.try_on_sides(build)?;
         // A second thread may have been faster: it made the same bits.
         Ok(cell.get_or_init(|| rung))
     }

@@ -16,7 +16,7 @@ use crate::error::DynamicsError;
 use crate::interactions::free_contact::{FoundContact, SlipAt};
 use crate::model::Model;
 use crate::system::newton::{NewtonSolution, Policy};
-use crate::system::{Body, System};
+use crate::system::{BodyId, System};
 
 /// Factors of the slip of creep that lead a Newton that stalls to the solution.
 const SOFTER: [f64; 3] = [100.0, 10.0, 1.0];
@@ -107,7 +107,7 @@ impl BearingParts {
     fn ball_blocks(&self) -> Vec<Range<usize>> {
         let system = self.system();
         (0..self.n_balls())
-            .map(|ball| system.unknowns(Body::Lumped(FIRST_BALL + ball)))
+            .map(|ball| system.unknowns(BodyId::Lumped(FIRST_BALL + ball)))
             .collect()
     }
 
@@ -120,17 +120,17 @@ impl BearingParts {
     fn lengths_per_unknown(&self, model: &Model) -> Vec<f64> {
         let system = self.system();
         let mut scales = vec![1.0; system.n()];
-        let tilts = self.shaft.free().zip(system.unknowns(Body::Lumped(SHAFT)));
+        let tilts = self.shaft.free().zip(system.unknowns(BodyId::Lumped(SHAFT)));
         for (dof, unknown) in tilts.filter(|(dof, _)| *dof >= 3) {
             scales[unknown] = 1.0 / model.geometry.centre_radius(Side::Inner);
             debug_assert!(dof < 5, "a shaft has five dofs");
         }
         for ball in 0..self.n_balls() {
-            let own = system.unknowns(Body::Lumped(FIRST_BALL + ball));
+            let own = system.unknowns(BodyId::Lumped(FIRST_BALL + ball));
             scales[own][3..].fill(2.0 / model.geometry.ball_diameter);
         }
         if self.cage().is_some() {
-            let own = system.unknowns(Body::Lumped(self.cage_body()));
+            let own = system.unknowns(BodyId::Lumped(self.cage_body()));
             scales[own][3..].fill(1.0 / model.geometry.ball_centre()[0]);
         }
         scales
@@ -190,7 +190,7 @@ impl BearingParts {
             forces: found.iter().map(|found| found.normal).collect(),
             mounts: Side::BOTH.map(|side| self.mount(&system, side, x)),
             ports: Side::BOTH.map(|side| {
-                let body = self.elastic(side).map(Body::Elastic);
+                let body = self.elastic(side).map(BodyId::Elastic);
                 body.map_or_else(Vec::new, |body| x[system.unknowns(body)].to_vec())
             }),
             free_ends: ends,

@@ -8,6 +8,7 @@ use super::cache::StepCache;
 use super::free::friction_at_start;
 use super::ledger::Ledger;
 use super::run::Motion;
+use super::state::PatchPlace;
 use super::state::{Ladder, MotionSettings, MotionState};
 use crate::error::DynamicsError;
 use crate::interactions::discrete_gradient::ContactScheme;
@@ -25,10 +26,7 @@ impl Motion<'_> {
         let ring = |side: Side| {
             let moving = self.rings[side.index()].as_ref()?;
             let elastic = solution.elastic[side.index()].as_ref()?;
-            let (q, velocity) = match side {
-                Side::Inner => (q, velocity),
-                _ => (seat, [0.0; 5]),
-            };
+            let (q, velocity) = side.choose((q, velocity), (seat, [0.0; 5]));
             let omega = self.settings.speeds.of(side).at(0.0);
             let others = model.other_seats[side.index()].as_ref().map(|o| o.as_slice());
             Some(ring_at_start(
@@ -40,11 +38,11 @@ impl Motion<'_> {
             ))
         };
         let contacts = solution.parts.states_at(&solution.displacements);
-        let places: Vec<[f64; 2]> = contacts.iter().map(|c| [c.angle, c.force.force]).collect();
+        let places: Vec<PatchPlace> = contacts.iter().map(PatchPlace::of).collect();
         let mut state = MotionState {
             step: 0,
             rung: 0,
-            rings: [ring(Side::Inner), ring(Side::Outer)],
+            rings: Side::BOTH.map(ring),
             balls: solution.displacements.balls.clone(),
             ball_velocities: vec![[0.0; 2]; model.geometry.n_balls],
             ball_accelerations: vec![[0.0; 2]; model.geometry.n_balls],
@@ -80,16 +78,17 @@ impl Motion<'_> {
             let omega = self.settings.speeds.of(side).at(0.0);
             let body = &*self.rings[side.index()].as_ref()?.body;
             let none = vec![0.0; body.held().coordinates.expanded()];
-            let (q, v) = match side {
-                Side::Inner => (q, velocity),
-                Side::Outer => ([0.0; 5], [0.0; 5]),
-            };
+            let (q, v) = side.choose((q, velocity), ([0.0; 5], [0.0; 5]));
             Some(ring_at_start(body, (&none, None), q, v, omega))
+        };
+        let unloaded = PatchPlace {
+            angle: self.model.geometry.free_contact_angle(),
+            force: 0.0,
         };
         let mut state = MotionState {
             step: 0,
             rung: 0,
-            rings: [ring(Side::Inner), ring(Side::Outer)],
+            rings: Side::BOTH.map(ring),
             balls: vec![[0.0; 2]; n],
             ball_velocities: vec![[0.0; 2]; n],
             ball_accelerations: vec![[0.0; 2]; n],
@@ -100,7 +99,7 @@ impl Motion<'_> {
             // Nothing is known of the accelerations.
             trend: vec![[f64::NAN; 2]; 3 * n],
             forces: vec![[0.0; 2]; 2 * n],
-            places: [(); 3].map(|()| vec![[self.model.geometry.free_contact_angle(), 0.0]; 2 * n]),
+            places: [(); 3].map(|()| vec![unloaded; 2 * n]),
             angles: vec![self.model.geometry.free_contact_angle(); 2 * n],
             approaches: vec![0.0; 2 * n],
             free: None,
@@ -181,7 +180,7 @@ impl Motion<'_> {
             state.angles[index] = contact.angle;
             state.forces[index] = contact.on_ring();
             for places in &mut state.places {
-                places[index] = [contact.angle, contact.force.force];
+                places[index] = PatchPlace::of(&contact);
             }
             state.ledger.hertz += contact.force.energy;
         }

@@ -4,6 +4,7 @@ use super::free_state::FreeState;
 use super::ledger::Ledger;
 use crate::interactions::contact_damping::ContactDamping;
 use crate::interactions::discrete_gradient::ContactScheme;
+use crate::interactions::raceway_contact::SiteState;
 use crate::kinematics::RingSpeeds;
 use ring::Integrator;
 use ring::RingState;
@@ -88,13 +89,41 @@ pub struct MotionState {
     pub angles: Vec<f64>,
     /// Hertz approaches at the end of the last step, by site, m; negative is a gap.
     pub approaches: Vec<f64>,
-    /// Contact angle, rad, and force, N, in the middle of the last three parts of a step, the last first, by site:
-    /// where their patches lay.
-    pub places: [Vec<[f64; 2]>; 3],
+    /// Where patches lay in the middle of the last three parts of a step, the last first, by site.
+    pub places: [Vec<PatchPlace>; 3],
     /// Free balls; None: they are kinematic. `balls` and `ball_velocities` then follow from these.
     pub free: Option<FreeState>,
     /// Energy ledger.
     pub ledger: Ledger,
+}
+
+/// Where a patch lies on its groove, and the force that gives it its size.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PatchPlace {
+    /// Contact angle, rad.
+    pub angle: f64,
+    /// Force, N.
+    pub force: f64,
+}
+
+impl PatchPlace {
+    /// That of a contact at an instant.
+    pub(super) fn of(contact: &SiteState) -> PatchPlace {
+        PatchPlace {
+            angle: contact.angle,
+            force: contact.force.force,
+        }
+    }
+
+    /// All of it in a row.
+    pub fn to_row(&self) -> [f64; 2] {
+        [self.angle, self.force]
+    }
+
+    /// The place of a row.
+    pub fn from_row([angle, force]: [f64; 2]) -> PatchPlace {
+        PatchPlace { angle, force }
+    }
 }
 
 impl MotionState {

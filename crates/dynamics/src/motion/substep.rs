@@ -15,6 +15,7 @@ use super::place::Placing;
 use super::run::Motion;
 use super::solve::{StepSolution, check_patches, check_range};
 use super::span::PartSpan;
+use super::state::PatchPlace;
 use super::state::{MotionState, StepReport};
 use crate::bearing::BearingParts;
 use crate::costs::{BLOCK_SOLVE, LOADS, NEWTON, PATCHES, UPDATE};
@@ -24,11 +25,11 @@ use crate::error::DynamicsError;
 const MAX_PLACE_ROUNDS: usize = 20;
 
 /// A part of a step under way.
-pub(super) struct Part<'m> {
+pub(super) struct StepPart<'m> {
     pub span: PartSpan,
     pub expected: Arc<ExpectedLoads>,
-    /// Contact angle, rad, and force, N, for which the patches were placed, by site.
-    places: Vec<[f64; 2]>,
+    /// Where the patches were placed, by site.
+    places: Vec<PatchPlace>,
     placing: Placing,
     pub rings: RingSteps<'m>,
     pub parts: BearingParts,
@@ -61,7 +62,7 @@ impl Motion<'_> {
     pub(super) fn conclude(
         &self,
         state: &MotionState,
-        mut part: Part<'_>,
+        mut part: StepPart<'_>,
         solution: &StepSolution,
         ends: RingEnds,
     ) -> Result<(MotionState, StepReport, Option<Ahead>), DynamicsError> {
@@ -92,7 +93,7 @@ impl Motion<'_> {
         state: &'m MotionState,
         span: PartSpan,
         cache: &StepCache,
-    ) -> Result<Part<'m>, DynamicsError> {
+    ) -> Result<StepPart<'m>, DynamicsError> {
         let mut report = StepReport {
             substeps: 1,
             ..StepReport::default()
@@ -109,7 +110,7 @@ impl Motion<'_> {
         report.laps.add(BLOCK_SOLVE, clock.lap() - known.total());
         report.laps.merge(&known);
         let parts = self.parts(state, span, placing.sites.clone(), &rings, &expected.loads)?;
-        Ok(Part {
+        Ok(StepPart {
             span,
             places,
             placing,
@@ -131,7 +132,7 @@ impl Motion<'_> {
     fn solve_in_place(
         &self,
         state: &MotionState,
-        part: &mut Part<'_>,
+        part: &mut StepPart<'_>,
     ) -> Result<StepSolution, DynamicsError> {
         for _ in 0..=MAX_PLACE_ROUNDS {
             let solution = match part.parts.free {
@@ -155,7 +156,7 @@ impl Motion<'_> {
     pub(super) fn stays_in_place(
         &self,
         state: &MotionState,
-        part: &mut Part<'_>,
+        part: &mut StepPart<'_>,
         solution: &StepSolution,
     ) -> Result<bool, DynamicsError> {
         let met = part.parts.places(solution);
@@ -173,18 +174,14 @@ impl Motion<'_> {
     }
 
     /// Both rings with their contacts where the patches are.
-    fn move_contacts(&self, part: &mut Part<'_>) {
+    fn move_contacts(&self, part: &mut StepPart<'_>) {
         let placing = &part.placing;
-        let [inner, outer] = &mut part.rings;
         let move_ring = |step: &mut Option<Box<dyn ElasticStep + '_>>, side: Side| {
             step.as_mut()
                 .map(|step| step.move_contacts(self.feet(side, placing)))
         };
-        let (inner, outer) = self
-            .model
-            .backend
-            .both(|| move_ring(inner, Side::Inner), || move_ring(outer, Side::Outer));
-        let known = longest([&inner, &outer].into_iter().flatten());
+        let known = self.model.backend.with_sides(part.rings.each_mut(), move_ring);
+        let known = longest(known.iter().flatten());
         let laps = &mut part.report.laps;
         laps.add(BLOCK_SOLVE, part.clock.lap() - known.total());
         laps.merge(&known);

@@ -13,7 +13,7 @@
 //! gives a point that lies beside it, d_psi^2 / (2 rho), is left out with the force across the meridian plane that
 //! would belong to it.
 
-use super::lumped::Body;
+use super::lumped::BodyId;
 
 /// Coordinates that the lengths depend on: both tilts.
 pub const N_FINITE: usize = 2;
@@ -72,8 +72,8 @@ impl FiniteMotion {
 
 impl CarriedCircle {
     /// The coordinates, in the order of their rows.
-    pub fn coordinates(&self) -> [(Body, usize); N_FINITE] {
-        [3, 4].map(|k| (Body::Lumped(self.carrier), k))
+    pub fn coordinates(&self) -> [(BodyId, usize); N_FINITE] {
+        [3, 4].map(|k| (BodyId::Lumped(self.carrier), k))
     }
 }
 

@@ -3,7 +3,7 @@
 use timer::SharedLaps;
 
 use super::finite::CarriedCircle;
-use super::lumped::Body;
+use super::lumped::BodyId;
 
 /// Most lengths of a link: three displacements and three rotations of one body, six lengths of another.
 pub const MOST_ROWS: usize = 12;
@@ -15,7 +15,7 @@ pub type LinkRows = [f64; MOST_ROWS];
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LinkTerm {
     /// The body.
-    pub body: Body,
+    pub body: BodyId,
     /// Its coordinate.
     pub coordinate: usize,
     /// Growth of the lengths.
@@ -24,7 +24,7 @@ pub struct LinkTerm {
 
 impl LinkTerm {
     /// A coordinate of a body with the growth of the first lengths.
-    pub fn new<const N: usize>(body: Body, coordinate: usize, rows: [f64; N]) -> LinkTerm {
+    pub fn new<const N: usize>(body: BodyId, coordinate: usize, rows: [f64; N]) -> LinkTerm {
         let rows = std::array::from_fn(|i| rows.get(i).copied().unwrap_or(0.0));
         LinkTerm {
             body,

@@ -13,7 +13,7 @@ pub enum Interval {
 
 /// A body of a system: its place in the list of its kind.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Body {
+pub enum BodyId {
     /// A lumped body.
     Lumped(usize),
     /// The ports of an elastic one.

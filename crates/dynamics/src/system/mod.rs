@@ -34,4 +34,4 @@ pub use assembly::{Evaluated, System};
 pub use elastic::{ElasticPorts, Follow};
 pub use finite::{CarriedCircle, Circle, Curvature, FiniteMotion, FiniteRows, N_FINITE, angle_functions};
 pub use interaction::{Character, Interaction, Lengths, Link, LinkForces, LinkRows, LinkTerm, MOST_ROWS};
-pub use lumped::{Body, Interval, Lumped};
+pub use lumped::{BodyId, Interval, Lumped};

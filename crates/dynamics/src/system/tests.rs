@@ -2,7 +2,7 @@
 
 use super::newton::{Policy, RoundOff, Shortening};
 use super::{
-    Body, Character, ElasticPorts, Follow, Interaction, Interval, Lengths, Link, LinkForces, LinkRows,
+    BodyId, Character, ElasticPorts, Follow, Interaction, Interval, Lengths, Link, LinkForces, LinkRows,
     LinkTerm, Lumped, System,
 };
 use crate::error::DynamicsError;
@@ -176,7 +176,7 @@ fn defect(system: &System, x: &[f64]) -> f64 {
     residual.iter().fold(0.0, |most, r| most.max(r.abs()))
 }
 
-fn three(body: Body, first: usize, sign: f64) -> [LinkTerm; 3] {
+fn three(body: BodyId, first: usize, sign: f64) -> [LinkTerm; 3] {
     let rows: [LinkRows; 3] = [0, 1, 2].map(|i| std::array::from_fn(|k| if k == i { sign } else { 0.0 }));
     [0, 1, 2].map(|i| LinkTerm {
         body,
@@ -201,7 +201,11 @@ fn a_family_with_memory_and_without_symmetry_meets_a_port_of_three_directions() 
         n_moving: 3,
         ..ElasticPorts::default()
     };
-    let terms = [three(Body::Lumped(0), 0, 1.0), three(Body::Elastic(0), 0, -1.0)].concat();
+    let terms = [
+        three(BodyId::Lumped(0), 0, 1.0),
+        three(BodyId::Elastic(0), 0, -1.0),
+    ]
+    .concat();
     let links = Matrix {
         links: vec![Link::linear(LinkRows::default(), terms)],
         matrix: SKEW,
@@ -235,10 +239,10 @@ fn a_body_may_place_itself_by_an_angle() {
         moment: 4.0 * radius * s * 0.3f64.cos(),
         start: [radius, 0.0],
     };
-    let terms = [0, 1].map(|i| LinkTerm::new(Body::Lumped(0), i, [f64::from(i == 0), f64::from(i == 1)]));
+    let terms = [0, 1].map(|i| LinkTerm::new(BodyId::Lumped(0), i, [f64::from(i == 0), f64::from(i == 1)]));
     let spring = Matrix {
         links: vec![Link::linear(
-            LinkTerm::new(Body::Lumped(0), 0, [0.0, s]).rows,
+            LinkTerm::new(BodyId::Lumped(0), 0, [0.0, s]).rows,
             terms.to_vec(),
         )],
         matrix: [[4.0, 0.0, 0.0], [0.0, 4.0, 0.0], [0.0; 3]],
@@ -320,7 +324,11 @@ fn the_tangent_is_the_derivative_of_the_residual() {
     let links = Matrix {
         links: vec![Link::linear(
             LinkRows::default(),
-            [three(Body::Lumped(0), 2, 0.5), three(Body::Elastic(0), 0, -1.0)].concat(),
+            [
+                three(BodyId::Lumped(0), 2, 0.5),
+                three(BodyId::Elastic(0), 0, -1.0),
+            ]
+            .concat(),
         )],
         matrix: SKEW,
         memory: vec![[0.0; 3]],

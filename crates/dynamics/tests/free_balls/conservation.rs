@@ -5,6 +5,7 @@ use dynamics::effects::{AxialForce, SpringPreload};
 use dynamics::interactions::seat_spring::Seat;
 use dynamics::interactions::traction::Creep;
 use dynamics::kinematics::{RingSpeeds, Speed};
+use dynamics::model::BallInertia;
 use dynamics::motion::{Motion, MotionState};
 use dynamics::{Model, ShaftDof};
 use input::Schedule;
@@ -44,7 +45,7 @@ fn momentum_is_kept_over_ten_thousand_steps_with_friction() {
     let mut start = motion.start(&solution);
     start.shaft_velocity[2] = 2e-3;
     let start = motion.with_energies(start);
-    let [mass, inertia] = model.ball_inertia();
+    let BallInertia { mass, moment } = model.ball_inertia();
     let along = |state: &MotionState| {
         let balls: f64 = state
             .free
@@ -60,7 +61,7 @@ fn momentum_is_kept_over_ten_thousand_steps_with_friction() {
         let free = state.free.as_ref().unwrap();
         let of = |ball: usize| {
             let ([x, y, _], [u, v, _]) = (free.places[ball], free.velocities[ball]);
-            mass * (x * v - y * u) + inertia * free.turnings[ball][2]
+            mass * (x * v - y * u) + moment * free.turnings[ball][2]
         };
         (0..3).map(of).sum::<f64>()
     };

@@ -231,7 +231,7 @@ fn a_surface_turns_orbits_by_its_torque_and_no_ball_about_itself() {
     let moment = |state: &MotionState, ball: usize| {
         let free = state.free.as_ref().unwrap();
         let (p, v) = (free.places[ball], free.velocities[ball]);
-        inertia[0] * (p[0] * v[1] - p[1] * v[0])
+        inertia.mass * (p[0] * v[1] - p[1] * v[0])
     };
     let motion = Motion::new(&model, settings(dt, &speeds)).unwrap();
     let start = motion.start(&equilibrium(&model));

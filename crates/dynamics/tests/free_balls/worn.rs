@@ -6,6 +6,7 @@ use std::sync::Arc;
 use contact::surface::{Heights, Wave};
 use contact::{BallSurface, Profiles, Side};
 use dynamics::kinematics::{RingSpeeds, Speed};
+use dynamics::model::BallInertia;
 use dynamics::motion::{Motion, MotionState};
 use dynamics::{Model, ShaftDof};
 
@@ -94,11 +95,11 @@ fn a_rough_ball_keeps_its_moment_of_momentum_about_the_axis() {
     for dof in [0, 1, 3, 4] {
         model.shaft[dof] = ShaftDof::Prescribed(0.0);
     }
-    let [mass, inertia] = model.ball_inertia();
+    let BallInertia { mass, moment } = model.ball_inertia();
     let moment = |state: &MotionState| {
         let free = state.free.as_ref().unwrap();
         let (p, v, w) = (free.places[4], free.velocities[4], free.turnings[4]);
-        [mass * (p[0] * v[1] - p[1] * v[0]), inertia * w[2]]
+        [mass * (p[0] * v[1] - p[1] * v[0]), moment * w[2]]
     };
     let motion = Motion::new(&model, settings(4e-6, &speeds)).unwrap();
     let start = motion.start(&equilibrium(&model));

@@ -76,6 +76,7 @@ impl Case {
             hertz: Side::BOTH.map(|side| HertzContact::new(&geometry, side, elastic, elastic)),
             sphere: SphereCompliance::default(),
             surfaces: Default::default(),
+            shoulders: Default::default(),
             geometry,
             rings: [None, None],
             other_seats: [None, None],

@@ -5,10 +5,10 @@
 
 use mesh::Mesh;
 
-use super::modes::Modes;
+use super::modes::IncompatibleModes;
 use crate::error::FemError;
 use crate::geometry::{checked_map, coordinates, physical};
-use crate::table::Table;
+use crate::table::ShapeTable;
 
 /// Points of the largest stiffness rule, hex20's.
 const MAX_POINTS: usize = 27;
@@ -27,7 +27,7 @@ const PAIRS: [[usize; 2]; 6] = [[0, 0], [1, 1], [2, 2], [0, 1], [1, 2], [0, 2]];
 
 /// Stiffness of element `e` with N nodes and compatible displacements, N/m, `[3 N][3 N]`.
 pub(crate) fn compatible<const N: usize>(
-    table: &Table,
+    table: &ShapeTable,
     mesh: &Mesh,
     e: usize,
     lambda: f64,
@@ -49,7 +49,7 @@ pub(crate) fn compatible<const N: usize>(
 
 /// Stiffness of the 8-node element `e` with condensed incompatible modes, N/m, `[24][24]`.
 pub(crate) fn with_modes(
-    table: &Table,
+    table: &ShapeTable,
     mesh: &Mesh,
     e: usize,
     lambda: f64,
@@ -57,7 +57,7 @@ pub(crate) fn with_modes(
     matrix: &mut [f64],
 ) -> Result<(), FemError> {
     let x = coordinates(mesh, e);
-    let modes = Modes::new(&x, e)?;
+    let modes = IncompatibleModes::new(&x, e)?;
     let mut gradients = [[[0.0; WITH_MODES]; 3]; 8];
     let mut weights = [0.0; MAX_POINTS];
     for q in 0..table.n_points() {

@@ -21,7 +21,7 @@ use crate::geometry::check_connectivity;
 use crate::material::Material;
 use crate::pattern::Pattern;
 use crate::quadrature;
-use crate::table::Table;
+use crate::table::ShapeTable;
 
 /// The stiffness matrix of all degrees of freedom, N/m, `[3 n_nodes][3 n_nodes]`, CSR, exactly symmetric.
 pub fn assemble_stiffness(mesh: &Mesh, material: &Material) -> Result<CsMat<f64>, FemError> {
@@ -101,7 +101,7 @@ pub fn stiffness_product(mesh: &Mesh, material: &Material, u: &[f64]) -> Result<
 
 /// What all elements of a kind and material share.
 pub(crate) struct ElementStiffness {
-    table: Table,
+    table: ShapeTable,
     lambda: f64,
     mu: f64,
 }
@@ -110,7 +110,7 @@ impl ElementStiffness {
     /// Tabulates the functions of a kind for a valid material.
     pub fn new(kind: ElementKind, material: &Material) -> ElementStiffness {
         ElementStiffness {
-            table: Table::new(kind, &quadrature::stiffness_rule(kind)),
+            table: ShapeTable::new(kind, &quadrature::stiffness_rule(kind)),
             lambda: material.lame_lambda(),
             mu: material.shear_modulus(),
         }

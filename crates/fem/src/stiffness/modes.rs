@@ -9,19 +9,19 @@
 use mesh::ElementKind;
 
 use crate::error::FemError;
-use crate::geometry::{Coordinates, InverseMap, invert, jacobian};
+use crate::geometry::{ElementCoordinates, InverseMap, invert, jacobian};
 use crate::table::gradients_by_component;
 
 /// Geometry of one element's incompatible modes.
-pub(crate) struct Modes {
+pub(crate) struct IncompatibleModes {
     /// The map at the centre.
     centre: InverseMap,
 }
 
-impl Modes {
+impl IncompatibleModes {
     /// The modes of element `e`; refuses an element inverted at its centre.
-    pub fn new(x: &Coordinates, e: usize) -> Result<Modes, FemError> {
-        let modes = Modes::unchecked(x);
+    pub fn new(x: &ElementCoordinates, e: usize) -> Result<IncompatibleModes, FemError> {
+        let modes = IncompatibleModes::unchecked(x);
         if modes.centre.det > 0.0 {
             return Ok(modes);
         }
@@ -41,9 +41,9 @@ impl Modes {
     }
 
     /// The modes of an element known to be valid.
-    pub fn unchecked(x: &Coordinates) -> Modes {
+    pub fn unchecked(x: &ElementCoordinates) -> IncompatibleModes {
         let dn = gradients_by_component(ElementKind::Hex8, [0.0; 3]);
-        Modes {
+        IncompatibleModes {
             centre: invert(&jacobian(8, &dn, x)),
         }
     }

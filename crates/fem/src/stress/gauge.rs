@@ -21,7 +21,7 @@ use crate::element::{self, MAX_NODES};
 use crate::facet;
 use crate::material::Material;
 use crate::quadrature::{self, VolumeRule};
-use crate::table::Table;
+use crate::table::ShapeTable;
 
 /// A point of a gauge.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -119,8 +119,8 @@ fn element_rows(mesh: &Mesh, material: &Material, e: usize, points: &[GaugePoint
     nodes.sort_unstable();
     let own = mesh.part(&[e], &nodes);
     let (table, stiffness) = (
-        Table::new(mesh.kind, &rule),
-        Table::new(mesh.kind, &quadrature::stiffness_rule(mesh.kind)),
+        ShapeTable::new(mesh.kind, &rule),
+        ShapeTable::new(mesh.kind, &quadrature::stiffness_rule(mesh.kind)),
     );
     let lame = [material.lame_lambda(), material.shear_modulus()];
     let mut rows = [[0.0; 3]; MAX_NODES];

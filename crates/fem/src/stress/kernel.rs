@@ -4,10 +4,10 @@ use mesh::{ElementKind, Mesh};
 
 use super::strain;
 use crate::element::MAX_NODES;
-use crate::geometry::{Coordinates, InverseMap, invert};
+use crate::geometry::{ElementCoordinates, InverseMap, invert};
 use crate::material::hooke;
-use crate::stiffness::modes::Modes;
-use crate::table::Table;
+use crate::stiffness::modes::IncompatibleModes;
+use crate::table::ShapeTable;
 
 /// Points of the largest stiffness rule.
 pub(crate) const MAX_POINTS: usize = 27;
@@ -29,7 +29,7 @@ pub(crate) fn node_state(positions: &[[f64; 3]], element: &[usize], u: &[f64]) -
 
 /// The inverse map and the gradient of the nodal displacements, `du_i/dx_j`, at point `q` of a table.
 pub(crate) fn displacement_gradient(
-    table: &Table,
+    table: &ShapeTable,
     q: usize,
     n_nodes: usize,
     state: &NodeState,
@@ -58,7 +58,7 @@ pub(crate) fn displacement_gradient(
 
 /// Strain of the nodal displacements at the points of the stiffness rule, `[n_points]`, and the determinants, m^3.
 pub(crate) fn compatible_strains(
-    table: &Table,
+    table: &ShapeTable,
     n_nodes: usize,
     state: &NodeState,
     strains: &mut [[f64; 6]; MAX_POINTS],
@@ -75,17 +75,17 @@ pub(crate) fn compatible_strains(
 /// Incompatible modes of an 8-node element and their amplitudes, m, `[mode][component]`, in equilibrium with the
 /// strains of its nodal displacements at the points of the stiffness rule: `K_mm alpha = -integral of B_m^T sigma`.
 pub(crate) fn equilibrate_modes(
-    table: &Table,
+    table: &ShapeTable,
     state: &NodeState,
     strains: &[[f64; 6]; MAX_POINTS],
     dets: &[f64; MAX_POINTS],
     [lambda, mu]: [f64; 2],
-) -> (Modes, [[f64; 3]; 3]) {
-    let mut x: Coordinates = [[0.0; 3]; MAX_NODES];
+) -> (IncompatibleModes, [[f64; 3]; 3]) {
+    let mut x: ElementCoordinates = [[0.0; 3]; MAX_NODES];
     for a in 0..8 {
         x[a] = [state[a][0], state[a][1], state[a][2]];
     }
-    let modes = Modes::unchecked(&x);
+    let modes = IncompatibleModes::unchecked(&x);
     // Weighted stress moments, and integrals of the products of the modes' reference slopes.
     let (mut moments, mut products) = ([[0.0; 6]; 3], [[0.0; 3]; 3]);
     for q in 0..8 {
@@ -126,7 +126,12 @@ pub(crate) fn equilibrate_modes(
 }
 
 /// Displacement gradient of the modes, `du_i/dx_j`, at a reference point with determinant `det`.
-pub(crate) fn mode_gradient(modes: &Modes, alpha: &[[f64; 3]; 3], xi: [f64; 3], det: f64) -> [[f64; 3]; 3] {
+pub(crate) fn mode_gradient(
+    modes: &IncompatibleModes,
+    alpha: &[[f64; 3]; 3],
+    xi: [f64; 3],
+    det: f64,
+) -> [[f64; 3]; 3] {
     let mut gradient = [[0.0; 3]; 3];
     for k in 0..3 {
         let slope = modes.gradient(k, xi, det);
@@ -142,7 +147,7 @@ pub(crate) fn mode_gradient(modes: &Modes, alpha: &[[f64; 3]; 3], xi: [f64; 3], 
 /// Strain at the points of the stiffness rule, `[n_points]`, incompatible modes of hex8 included; returns the volume,
 /// m^3.
 pub(crate) fn strains(
-    table: &Table,
+    table: &ShapeTable,
     state: &NodeState,
     lame: [f64; 2],
     strains: &mut [[f64; 6]; MAX_POINTS],
@@ -171,8 +176,8 @@ pub(crate) fn strains_at(
     e: usize,
     u: &[f64],
     lame: [f64; 2],
-    stiffness: &Table,
-    points: &Table,
+    stiffness: &ShapeTable,
+    points: &ShapeTable,
 ) -> Vec<[f64; 6]> {
     let n = mesh.kind.n_nodes();
     let state = node_state(&mesh.nodes, mesh.element(e), u);

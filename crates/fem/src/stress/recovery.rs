@@ -21,7 +21,7 @@ use crate::geometry::{check_connectivity, checked_map, coordinates, position};
 use crate::material::{Material, hooke};
 use crate::pattern::ElementsOfNodes;
 use crate::quadrature::{self, VolumeRule};
-use crate::table::Table;
+use crate::table::ShapeTable;
 
 /// Elements or nodes of one task.
 const TASK: usize = 256;
@@ -37,7 +37,7 @@ pub struct StressRecovery {
     /// Lamé's constants, Pa.
     lame: [f64; 2],
     /// Shape functions at the stress points.
-    table: Table,
+    table: ShapeTable,
     /// From stress points to corners, `[n_corners][n_points]`.
     projection: Vec<Vec<f64>>,
     /// The two corners whose mean is the value at a node of an element, `[kind.n_nodes()]`.
@@ -61,7 +61,7 @@ impl StressRecovery {
         material.validate()?;
         check_connectivity(mesh)?;
         let rule = quadrature::stiffness_rule(mesh.kind);
-        let table = Table::new(mesh.kind, &rule);
+        let table = ShapeTable::new(mesh.kind, &rule);
         let mut volumes = vec![0.0; mesh.n_nodes()];
         for e in 0..mesh.n_elements() {
             let x = coordinates(mesh, e);
@@ -210,7 +210,7 @@ impl StressRecovery {
     }
 
     /// Shape functions at the stress points.
-    pub(super) fn table(&self) -> &Table {
+    pub(super) fn table(&self) -> &ShapeTable {
         &self.table
     }
 

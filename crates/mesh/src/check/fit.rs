@@ -43,12 +43,13 @@ pub fn check_torus(
 }
 
 /// A change of the axes.
-type Turn = fn([f64; 3]) -> [f64; 3];
+type AxesChange = fn([f64; 3]) -> [f64; 3];
 
 /// What would make the mesh fit, if it is a matter of its place alone.
 fn remedy(points: &[[f64; 3]], torus: &Torus, tolerance: f64) -> Box<str> {
-    let fits = |of: Turn, torus: &Torus| points.iter().all(|&x| torus.distance(of(x)).abs() <= tolerance);
-    let axes: [(&str, Turn); 2] = [("x", |[x, y, z]| [y, z, x]), ("y", |[x, y, z]| [z, x, y])];
+    let fits =
+        |of: AxesChange, torus: &Torus| points.iter().all(|&x| torus.distance(of(x)).abs() <= tolerance);
+    let axes: [(&str, AxesChange); 2] = [("x", |[x, y, z]| [y, z, x]), ("y", |[x, y, z]| [z, x, y])];
     for (axis, turned) in axes {
         // The groove's plane may lie elsewhere on that axis.
         let moved = centred(points.iter().map(|&x| turned(x)[2]), torus);

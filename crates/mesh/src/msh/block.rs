@@ -1,7 +1,7 @@
 //! Elements of one type as a file has them.
 
 /// Elements of one type in one entity.
-pub(crate) struct Block {
+pub(crate) struct ElementBlock {
     /// Dimension of the elements, 0 to 3.
     pub(crate) dimension: usize,
     /// Gmsh element type.

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use super::block::Block;
+use super::block::ElementBlock;
 use super::raw::RawMsh;
 use super::tags::TagMap;
 use super::types::{gmsh_type, remedy};
@@ -31,7 +31,7 @@ impl Wanted {
 }
 
 /// Elements of one type and their nodes, both in the order of their tags.
-pub(crate) struct Body {
+pub(crate) struct MeshBody {
     /// Gmsh element type of all.
     pub(crate) gmsh_type: i64,
     /// Nodes per element.
@@ -48,7 +48,7 @@ pub(crate) struct Body {
 pub(crate) type BoundaryElement = (u64, Vec<usize>);
 
 /// Extracts the elements of the wanted group.
-pub(crate) fn select_body(raw: &RawMsh, path: &Path, wanted: &Wanted) -> Result<Body, MeshError> {
+pub(crate) fn select_body(raw: &RawMsh, path: &Path, wanted: &Wanted) -> Result<MeshBody, MeshError> {
     let numbers = raw.numbers(wanted.dimension, wanted.name);
     let blocks = blocks_of(raw, wanted.dimension, &numbers);
     let Some(first) = blocks.first() else {
@@ -90,7 +90,7 @@ pub(crate) fn select_body(raw: &RawMsh, path: &Path, wanted: &Wanted) -> Result<
         .iter()
         .flat_map(|element| element.1.iter().filter_map(known))
         .collect();
-    Ok(Body {
+    Ok(MeshBody {
         gmsh_type,
         n_nodes,
         node_tags,
@@ -100,8 +100,9 @@ pub(crate) fn select_body(raw: &RawMsh, path: &Path, wanted: &Wanted) -> Result<
     })
 }
 
-fn blocks_of<'a>(raw: &'a RawMsh, dimension: usize, numbers: &[i64]) -> Vec<&'a Block> {
-    let of_group = |b: &&Block| b.dimension == dimension && b.physical.iter().any(|p| numbers.contains(p));
+fn blocks_of<'a>(raw: &'a RawMsh, dimension: usize, numbers: &[i64]) -> Vec<&'a ElementBlock> {
+    let of_group =
+        |b: &&ElementBlock| b.dimension == dimension && b.physical.iter().any(|p| numbers.contains(p));
     raw.blocks
         .iter()
         .filter(of_group)
@@ -110,7 +111,7 @@ fn blocks_of<'a>(raw: &'a RawMsh, dimension: usize, numbers: &[i64]) -> Vec<&'a 
 }
 
 /// All elements must be of one type, and that one of those wanted.
-fn check_types(blocks: &[&Block], path: &Path, wanted: &Wanted) -> Result<(), MeshError> {
+fn check_types(blocks: &[&ElementBlock], path: &Path, wanted: &Wanted) -> Result<(), MeshError> {
     let mut counts: BTreeMap<i64, (usize, u64)> = BTreeMap::new();
     for block in blocks {
         let entry = counts.entry(block.gmsh_type).or_insert((0, block.tags[0]));
@@ -212,7 +213,7 @@ fn check_nodes(
 /// but has no element is there, and empty.
 pub(crate) fn named_boundary(
     raw: &RawMsh,
-    body: &Body,
+    body: &MeshBody,
     path: &Path,
     dimension: usize,
 ) -> Result<BTreeMap<String, Vec<BoundaryElement>>, MeshError> {

@@ -8,10 +8,10 @@ use crate::error::MeshError;
 use crate::mesh::{Facet, Mesh};
 
 /// Sorted corners of a face; a triangle has `usize::MAX` last.
-type Key = [usize; 4];
+type FaceCorners = [usize; 4];
 
 /// The facets of one key: the first, and how many there are.
-type Behind = HashMap<Key, (Facet, usize)>;
+type Behind = HashMap<FaceCorners, (Facet, usize)>;
 
 /// Facet groups of `mesh` (whose groups are still empty) from surface elements, sorted by element and face.
 pub(crate) fn facet_groups(
@@ -85,7 +85,7 @@ fn faces_near(mesh: &Mesh, surfaces: &BTreeMap<String, Vec<BoundaryElement>>) ->
     behind
 }
 
-fn key(corners: impl Iterator<Item = usize>) -> Key {
+fn key(corners: impl Iterator<Item = usize>) -> FaceCorners {
     let mut key = [usize::MAX; 4];
     for (slot, corner) in key.iter_mut().zip(corners) {
         *slot = corner;

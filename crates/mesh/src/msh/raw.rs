@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use super::block::Block;
+use super::block::ElementBlock;
 use super::cursor::{Cursor, shown};
 use super::{v22, v41};
 use crate::error::MeshError;
@@ -18,7 +18,7 @@ pub(crate) struct RawMsh {
     /// Sorted tags of nodes that may be mere construction points.
     pub(crate) construction: Vec<u64>,
     /// Elements; their tags are unique.
-    pub(crate) blocks: Vec<Block>,
+    pub(crate) blocks: Vec<ElementBlock>,
 }
 
 /// The versions that are read.

@@ -1,6 +1,6 @@
 //! The sections of MSH 2.2 in text form (Gmsh reference manual, "MSH file format version 2").
 
-use super::block::Block;
+use super::block::ElementBlock;
 use super::cursor::Cursor;
 use super::types::gmsh_type;
 use crate::error::MeshError;
@@ -21,9 +21,9 @@ pub(crate) fn read_nodes(cursor: &mut Cursor<'_>) -> Result<Vec<(u64, [f64; 3])>
 }
 
 /// Reads `$Elements`; neighbours of one type and group share a block.
-pub(crate) fn read_elements(cursor: &mut Cursor<'_>) -> Result<Vec<Block>, MeshError> {
+pub(crate) fn read_elements(cursor: &mut Cursor<'_>) -> Result<Vec<ElementBlock>, MeshError> {
     let n = cursor.count("elements", [2, 2, 0])?;
-    let mut blocks: Vec<Block> = Vec::new();
+    let mut blocks: Vec<ElementBlock> = Vec::new();
     for _ in 0..n {
         let tag = cursor.size("an element tag")?;
         let number = cursor.int("an element type")?;
@@ -31,10 +31,10 @@ pub(crate) fn read_elements(cursor: &mut Cursor<'_>) -> Result<Vec<Block>, MeshE
             return Err(cursor.damaged("an element type of the format", number.to_string()));
         };
         let physical = read_physical(cursor)?;
-        let same = |block: &Block| block.gmsh_type == number && block.physical == physical;
+        let same = |block: &ElementBlock| block.gmsh_type == number && block.physical == physical;
         if !blocks.last().is_some_and(same) {
             let (tags, nodes) = (Vec::new(), Vec::new());
-            blocks.push(Block {
+            blocks.push(ElementBlock {
                 dimension,
                 gmsh_type: number,
                 n_nodes,

@@ -6,7 +6,7 @@
 
 use std::collections::BTreeMap;
 
-use super::block::Block;
+use super::block::ElementBlock;
 use super::cursor::Cursor;
 use super::types::gmsh_type;
 use crate::error::MeshError;
@@ -38,7 +38,7 @@ impl Entities {
     }
 
     /// Gives each block the physical groups of its entity.
-    pub(crate) fn assign(&self, blocks: &mut [Block]) {
+    pub(crate) fn assign(&self, blocks: &mut [ElementBlock]) {
         for (block, entity) in blocks.iter_mut().zip(&self.of_block) {
             let mut groups = self.physical.get(entity).cloned().unwrap_or_default();
             if let Some(parent) = self.parent.get(entity).filter(|parent| parent.0 == entity.0) {
@@ -168,7 +168,7 @@ pub(crate) fn read_nodes(
 pub(crate) fn read_elements(
     cursor: &mut Cursor<'_>,
     entities: &mut Entities,
-) -> Result<Vec<Block>, MeshError> {
+) -> Result<Vec<ElementBlock>, MeshError> {
     let n_blocks = cursor.count("element blocks", [3, 1, 0])?;
     let announced = cursor.count("elements", [0, 2, 0])?;
     cursor.size("the smallest element tag")?;
@@ -189,7 +189,7 @@ pub(crate) fn read_elements(
     Ok(blocks)
 }
 
-fn read_block(cursor: &mut Cursor<'_>, dimension: usize) -> Result<Block, MeshError> {
+fn read_block(cursor: &mut Cursor<'_>, dimension: usize) -> Result<ElementBlock, MeshError> {
     let number = cursor.int("an element type")?;
     let Some((type_dimension, n_nodes, name)) = gmsh_type(number) else {
         return Err(cursor.damaged("an element type of the format", number.to_string()));
@@ -206,7 +206,7 @@ fn read_block(cursor: &mut Cursor<'_>, dimension: usize) -> Result<Block, MeshEr
             nodes.push(cursor.size("a node tag")?);
         }
     }
-    Ok(Block {
+    Ok(ElementBlock {
         dimension,
         gmsh_type: number,
         n_nodes,

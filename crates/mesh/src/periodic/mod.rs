@@ -38,7 +38,7 @@ const OFFSET_TOLERANCE: f64 = 1e-6;
 pub struct Periodicity {
     n_sectors: usize,
     nodes: Vec<usize>,
-    sites: Vec<Site>,
+    sites: Vec<PeriodicSite>,
     elements: Vec<usize>,
     half_way: Option<Vec<bool>>,
     deviation: f64,
@@ -46,7 +46,7 @@ pub struct Periodicity {
 
 /// Place of a node in a periodic mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub struct Site {
+pub struct PeriodicSite {
     /// Sector, below [`Periodicity::n_sectors`].
     pub sector: usize,
     /// Node of the section, below [`Periodicity::n_section_nodes`].
@@ -70,7 +70,7 @@ impl Periodicity {
     }
 
     /// Site of every mesh node, `[n_nodes]`.
-    pub fn sites(&self) -> &[Site] {
+    pub fn sites(&self) -> &[PeriodicSite] {
         &self.sites
     }
 
@@ -93,7 +93,7 @@ impl Periodicity {
     }
 
     /// Section nodes of whole rings of nodes, ascending. The error is the first site that `nodes` lacks.
-    pub fn section_nodes(&self, nodes: &[usize]) -> Result<Vec<usize>, Site> {
+    pub fn section_nodes(&self, nodes: &[usize]) -> Result<Vec<usize>, PeriodicSite> {
         let mut named = vec![false; self.sites.len()];
         nodes.iter().for_each(|&node| named[node] = true);
         let mut section: Vec<usize> = nodes.iter().map(|&n| self.sites[n].section_node).collect();
@@ -103,7 +103,7 @@ impl Periodicity {
         for sector in 0..self.n_sectors {
             for &section_node in &section {
                 if !named[self.nodes[sector * width + section_node]] {
-                    return Err(Site { sector, section_node });
+                    return Err(PeriodicSite { sector, section_node });
                 }
             }
         }
@@ -237,8 +237,8 @@ fn half_offset(offset: f64) -> Option<bool> {
 }
 
 /// Sites of all nodes; the error is a node that has none or that a second site takes.
-fn invert(nodes: &[usize], n_nodes: usize, width: usize) -> Result<Vec<Site>, usize> {
-    let nowhere = Site {
+fn invert(nodes: &[usize], n_nodes: usize, width: usize) -> Result<Vec<PeriodicSite>, usize> {
+    let nowhere = PeriodicSite {
         sector: usize::MAX,
         section_node: usize::MAX,
     };
@@ -247,7 +247,7 @@ fn invert(nodes: &[usize], n_nodes: usize, width: usize) -> Result<Vec<Site>, us
         if sites[node] != nowhere {
             return Err(node);
         }
-        sites[node] = Site {
+        sites[node] = PeriodicSite {
             sector: i / width,
             section_node: i % width,
         };

@@ -29,7 +29,8 @@ fn state() -> MotionState {
     };
     let mut pairs = |n: usize| (0..n).map(|_| [number(), number()]).collect::<Vec<_>>();
     let (balls, ball_velocities, ball_accelerations) = (pairs(2), pairs(2), pairs(2));
-    let (trend, forces, places) = (pairs(6), pairs(4), [(); 3].map(|()| pairs(4)));
+    let (trend, forces) = (pairs(6), pairs(4));
+    let places = [(); 3].map(|()| pairs(4).into_iter().map(PatchPlace::from_row).collect());
     let mut list = |n: usize| (0..n).map(|_| number()).collect::<Vec<_>>();
     let body = BodyState([list(2), list(2), list(2)]);
     let ring = RingState::new(vec![f64::NAN, -0.0, 1e-300], list(3), list(3)).with_body(Some(body));

@@ -12,7 +12,7 @@ use sprs::CsMat;
 
 use crate::coordinates::Coordinates;
 use crate::error::RingError;
-use crate::harmonic::defect_change::{Changes, Patch};
+use crate::harmonic::defect_change::{Changes, DefectElements};
 use crate::harmonic::regular::RegularRing;
 use crate::model::RingModel;
 use crate::sparse::{node_product, product};
@@ -27,7 +27,7 @@ pub struct RingDefect {
     /// How many of them the true ring has.
     n_present: usize,
     /// Its elements as they are, and as they would be.
-    patches: [Patch; 2],
+    patches: [DefectElements; 2],
     /// Differences of M and K between nodes that are there.
     change: [CsMat<f64>; 2],
     note: String,
@@ -87,7 +87,7 @@ impl RingDefect {
             let whole = &regular.mesh;
             let mut part = whole.part(elements, &nodes);
             part.nodes = nodes.iter().map(|&node| positions[node]).collect();
-            Patch::new(part, ring).map_err(|source| RingError::Fem { side, source })
+            DefectElements::new(part, ring).map_err(|source| RingError::Fem { side, source })
         };
         let patches = [patch(&placed, &present)?, patch(&regular.mesh.nodes, &all)?];
         let rows: Vec<usize> = (0..n_present).collect();

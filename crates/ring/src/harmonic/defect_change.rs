@@ -17,7 +17,7 @@ use crate::coordinates::Coordinates;
 use crate::model::RingModel;
 
 /// Elements of the defect.
-pub(crate) struct Patch {
+pub(crate) struct DefectElements {
     /// Positions of the nodes, m.
     pub positions: Vec<[f64; 3]>,
     /// `[3 n][3 n]`.
@@ -50,13 +50,13 @@ enum Row {
 }
 
 /// Rows of T: the coordinates that move a dof and by how much.
-type Terms = Vec<Vec<(Row, f64)>>;
+type CoordinateRows = Vec<Vec<(Row, f64)>>;
 
 impl Changes {
     /// The changes by elements with the `nodes` (ascending) of the regular ring, as they are and as they would be.
     pub(crate) fn new(
         nodes: &[usize],
-        patches: &[Patch; 2],
+        patches: &[DefectElements; 2],
         coordinates: &Coordinates,
         regular: &Coordinates,
     ) -> Changes {
@@ -131,18 +131,18 @@ impl Changes {
     }
 }
 
-impl Patch {
-    pub fn new(part: Mesh, ring: &RingModel) -> Result<Patch, fem::FemError> {
+impl DefectElements {
+    pub fn new(part: Mesh, ring: &RingModel) -> Result<DefectElements, fem::FemError> {
         let n = part.n_nodes();
         if part.connectivity.is_empty() {
-            return Ok(Patch {
+            return Ok(DefectElements {
                 positions: part.nodes.to_vec(),
                 stiffness: CsMat::zero((3 * n, 3 * n)),
                 node_mass: CsMat::zero((n, n)),
             });
         }
         let pattern = fem::Pattern::new(&part)?;
-        Ok(Patch {
+        Ok(DefectElements {
             stiffness: fem::assemble_stiffness(&part, &ring.material)?,
             node_mass: fem::assemble_node_mass(&pattern, &part, &ring.material)?,
             positions: part.nodes.to_vec(),
@@ -156,7 +156,7 @@ fn true_terms(
     positions: &[[f64; 3]],
     coordinates: &Coordinates,
     regular: &Coordinates,
-) -> Terms {
+) -> CoordinateRows {
     let row = |i: usize| match coordinates.free().get(i) {
         Some(dof) if regular.free_node(dof / 3).is_none() => Row::Loose(i),
         _ => Row::True(i),
@@ -178,7 +178,7 @@ fn regular_terms(
     positions: &[[f64; 3]],
     coordinates: &Coordinates,
     regular: &Coordinates,
-) -> Terms {
+) -> CoordinateRows {
     let [(_, first), (_, first_regular)] = [coordinates, regular].map(Coordinates::shaft);
     let row = |i: usize| match i.checked_sub(first_regular) {
         Some(k) => Row::True(first + k),

@@ -25,7 +25,7 @@ use dense::DenseCholesky;
 pub(crate) struct Harmonics {
     pub held: HeldSectors,
     /// Its defect.
-    pub defect: Option<Change>,
+    pub defect: Option<DefectChange>,
     pub note: String,
     /// What its motion holds, but for the mount.
     sizes: MotionSizes,
@@ -48,7 +48,7 @@ impl HarmonicBody {
 }
 
 /// What a defect makes of a periodic ring before S is known.
-pub(crate) struct Change {
+pub(crate) struct DefectChange {
     pub changes: Changes,
     /// Of the ring without the defect, whose border is that of low harmonics.
     coordinates: Coordinates,
@@ -56,7 +56,7 @@ pub(crate) struct Change {
     positions: NodePositions,
 }
 
-impl Change {
+impl DefectChange {
     /// Nodes of the regular ring.
     pub fn nodes(&self) -> Nodes<'_> {
         Nodes {
@@ -95,7 +95,7 @@ impl Harmonics {
         let (change, defect) = match periodic.defect {
             Some(Defective { defect, regular }) => {
                 let of_regular = held.coordinates.of_mesh(&regular.mesh, &regular.held);
-                let change = Change {
+                let change = DefectChange {
                     changes: defect.changes(&held.coordinates, &of_regular),
                     coordinates: of_regular,
                     stencils: stencils(&whole.ring, None)?,
@@ -126,7 +126,7 @@ impl Harmonics {
     /// The nodes whose matrices act on vectors of harmonics: those of the regular ring where there is a defect, else
     /// `own`.
     pub fn regular_nodes<'a>(&'a self, own: Nodes<'a>) -> Nodes<'a> {
-        self.defect.as_ref().map_or(own, Change::nodes)
+        self.defect.as_ref().map_or(own, DefectChange::nodes)
     }
 
     /// Factors c_M M + c_K K.

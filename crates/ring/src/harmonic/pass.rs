@@ -25,7 +25,7 @@ use super::space::HarmonicSpace;
 use crate::integrator::StepScheme;
 use crate::matrices::Nodes;
 use crate::pool::PooledVector;
-use crate::settling::Change;
+use crate::settling::LoadChange;
 use crate::state::{RingState, RowValues, advance_part};
 use crate::step::{FrameTurn, KnownLoad};
 use crate::vectors;
@@ -79,7 +79,7 @@ pub(super) struct PassEnd {
     /// Work of the load and of the inertia of the frame, J.
     pub works: [f64; 2],
     /// Inertia that fits the increment, and its difference from that which acted.
-    pub renewed: (PooledVector, Change),
+    pub renewed: (PooledVector, LoadChange),
     pub next: Option<Predicted>,
 }
 
@@ -87,7 +87,7 @@ pub(super) struct PassEnd {
 pub(super) struct Turned {
     /// Inertia that fits it.
     pub inertia: PooledVector,
-    pub change: Change,
+    pub change: LoadChange,
     /// The predictor under the new inertia.
     pub predictor: PooledVector,
     /// The increment on the rows of a defect.
@@ -236,9 +236,9 @@ impl Pass<'_> {
 }
 
 /// The change that all groups make.
-fn change(found: &[Found]) -> Change {
+fn change(found: &[Found]) -> LoadChange {
     let [square, new_square] = total(found, |f| f.squares);
-    Change { square, new_square }
+    LoadChange { square, new_square }
 }
 
 /// Sums over the groups, in their order.

@@ -21,7 +21,7 @@ const LEAST_SECTORS: usize = 12;
 const MOST_TABLE_BYTES: usize = 1_600_000_000;
 
 /// One sector of a ring with some of its section nodes.
-pub struct Sectors {
+pub struct PeriodicSectors {
     /// Where its nodes are.
     pub ring: CyclicRing,
     /// Stiffness.
@@ -33,7 +33,7 @@ pub struct Sectors {
 /// A ring without its held nodes.
 pub struct HeldSectors {
     /// What is left.
-    pub sectors: Sectors,
+    pub sectors: PeriodicSectors,
     /// Section nodes of the raceway, counted among those that stay.
     pub raceway: Vec<usize>,
     /// Where the true ring's free nodes are among those of the regular one, when there is a defect.
@@ -43,7 +43,7 @@ pub struct HeldSectors {
 /// A ring that harmonics solve.
 pub struct Periodic {
     /// All of it, without its defect.
-    pub whole: Sectors,
+    pub whole: PeriodicSectors,
     /// What is left when some nodes are held.
     pub held: HeldSectors,
     /// Its defect, if it has one.
@@ -106,7 +106,7 @@ impl Periodic {
         held: &[usize],
     ) -> Result<Result<Periodic, String>, RingError> {
         let periodicity = ring.periodicity().expect("the caller knows that it has sectors");
-        let whole = Sectors::assemble(ring, &ring.mesh, periodicity, side)?.shared();
+        let whole = PeriodicSectors::assemble(ring, &ring.mesh, periodicity, side)?.shared();
         let held = match periodicity.section_nodes(held) {
             Ok(held) => held,
             Err(site) => {
@@ -153,7 +153,7 @@ impl Periodic {
             Ok(defect) => defect,
             Err(reason) => return Ok(Err(reason)),
         };
-        let whole = Sectors::assemble(ring, &regular.mesh, periodicity, side)?.shared();
+        let whole = PeriodicSectors::assemble(ring, &regular.mesh, periodicity, side)?.shared();
         let raceway = along_groove(regular.raceway.clone(), &regular.mesh, periodicity);
         let mut held = match whole.without(periodicity, [&regular.held_section, &raceway], side)? {
             Ok(held) => held,
@@ -248,10 +248,10 @@ impl Periodic {
     }
 }
 
-impl Sectors {
+impl PeriodicSectors {
     /// The same with harmonics that the ranks of the run share.
-    fn shared(self) -> Sectors {
-        Sectors {
+    fn shared(self) -> PeriodicSectors {
+        PeriodicSectors {
             ring: self.ring.shared_by(Backend::Cyclic.comm()),
             ..self
         }
@@ -262,11 +262,11 @@ impl Sectors {
         mesh: &Mesh,
         periodicity: &Periodicity,
         side: &'static str,
-    ) -> Result<Sectors, RingError> {
+    ) -> Result<PeriodicSectors, RingError> {
         let sector = fem::assemble_sector(mesh, periodicity, &ring.material)
             .map_err(|source| RingError::Fem { side, source })?;
         let couplings = couplings(&sector.couplings);
-        let build = || -> Result<Sectors, SolverError> {
+        let build = || -> Result<PeriodicSectors, SolverError> {
             let (n, width) = (periodicity.n_sectors(), periodicity.n_section_nodes());
             let stiffness = CyclicMatrix::new(n, width, &couplings, &sector.stiffness)?;
             let mass = stiffness.with_blocks(&couplings, &sector.mass)?;
@@ -277,7 +277,7 @@ impl Sectors {
                 &directions,
                 periodicity.half_way(),
             )?;
-            Ok(Sectors {
+            Ok(PeriodicSectors {
                 ring,
                 stiffness,
                 mass,
@@ -307,7 +307,7 @@ impl Sectors {
             .restricted(&stiffness, &keep)
             .map_err(|source| RingError::Solver { side, source })?;
         Ok(Ok(HeldSectors {
-            sectors: Sectors {
+            sectors: PeriodicSectors {
                 ring: restricted,
                 stiffness,
                 mass,

@@ -38,7 +38,7 @@ pub(crate) struct SpaceDefect {
     /// Section nodes of the rows.
     part: SectionPart,
     /// Where the rows are in a vector: those of the true ring, then those that it lacks.
-    places: Vec<Place>,
+    places: Vec<SpaceRow>,
     /// Rows of the true ring.
     n_rows: usize,
     /// D of M and K.
@@ -59,7 +59,7 @@ struct FrameRows {
 }
 
 /// Where a row is in a vector of the space.
-enum Place {
+enum SpaceRow {
     /// A row of the regular ring.
     Free(usize),
     /// A row behind the harmonics.
@@ -85,12 +85,12 @@ impl SpaceDefect {
             return None;
         }
         let place = |&row: &usize| match row.checked_sub(n_free) {
-            Some(shaft) => Some(Place::Shaft(shaft)),
-            None => Some(Place::Free(3 * seen[row / 3]? + row % 3)),
+            Some(shaft) => Some(SpaceRow::Shaft(shaft)),
+            None => Some(SpaceRow::Free(3 * seen[row / 3]? + row % 3)),
         };
-        let rows: Option<Vec<Place>> = changes.rows().iter().map(place).collect();
+        let rows: Option<Vec<SpaceRow>> = changes.rows().iter().map(place).collect();
         let (mut places, n_rows) = (rows?, changes.rows().len());
-        places.extend(changes.gone().iter().map(|&row| Place::Free(row)));
+        places.extend(changes.gone().iter().map(|&row| SpaceRow::Free(row)));
         let n = places.len();
         let [mass, stiffness] = changes.values();
         let of_lacking: Vec<f64> = (n_rows..n)
@@ -101,8 +101,8 @@ impl SpaceDefect {
             n_gone => Some(DenseCholesky::factor(n_gone, &of_lacking).ok()?),
         };
         let nodes = places.iter().filter_map(|place| match place {
-            Place::Free(row) => Some(row / 3),
-            Place::Shaft(_) => None,
+            SpaceRow::Free(row) => Some(row / 3),
+            SpaceRow::Shaft(_) => None,
         });
         Some(SpaceDefect {
             part: regular.section_part(&[], nodes),
@@ -119,10 +119,10 @@ impl SpaceDefect {
     pub(super) fn turning(self, own: Nodes<'_>, regular: Nodes<'_>, true_rows: &[usize]) -> SpaceDefect {
         let n_free = regular.coordinates.free().len();
         let on_rows = |[own, regular]: [Vec<f64>; 2]| -> Vec<f64> {
-            let place = |(i, place): (usize, &Place)| {
+            let place = |(i, place): (usize, &SpaceRow)| {
                 let of_regular = match place {
-                    Place::Free(row) => regular[*row],
-                    Place::Shaft(k) => regular[n_free + k],
+                    SpaceRow::Free(row) => regular[*row],
+                    SpaceRow::Shaft(k) => regular[n_free + k],
                 };
                 true_rows.get(i).map_or(0.0, |&row| own[row]) - of_regular
             };
@@ -155,14 +155,14 @@ impl SpaceDefect {
     pub(super) fn inertia(&self, turn: FrameTurn, [w, v]: [&[f64]; 2]) -> Vec<f64> {
         let (speed, acceleration) = (turn.speed, turn.acceleration);
         let square = speed * speed;
-        let turned = |(i, place): (usize, &Place)| match place {
-            Place::Free(row) if row % 3 == 0 => {
+        let turned = |(i, place): (usize, &SpaceRow)| match place {
+            SpaceRow::Free(row) if row % 3 == 0 => {
                 square * w[i] + acceleration * w[i + 1] + 2.0 * speed * v[i + 1]
             }
-            Place::Free(row) if row % 3 == 1 => {
+            SpaceRow::Free(row) if row % 3 == 1 => {
                 square * w[i] - acceleration * w[i - 1] - 2.0 * speed * v[i - 1]
             }
-            Place::Free(_) | Place::Shaft(_) => 0.0,
+            SpaceRow::Free(_) | SpaceRow::Shaft(_) => 0.0,
         };
         let field: Vec<f64> = self.places.iter().enumerate().map(turned).collect();
         let mut inertia = product(&self.change[0], &field);
@@ -173,7 +173,7 @@ impl SpaceDefect {
         };
         more([square, acceleration], &frame.position);
         for (i, place) in self.places.iter().enumerate() {
-            if let Place::Shaft(k) = place {
+            if let SpaceRow::Shaft(k) = place {
                 let factors = [square * w[i], acceleration * w[i] + 2.0 * speed * v[i]];
                 more(factors, &frame.shaft[*k]);
             }
@@ -185,9 +185,9 @@ impl SpaceDefect {
     pub(super) fn values(&self, x: &[f64]) -> Vec<f64> {
         let (harmonics, border) = x.split_at(self.regular.harmonic_len());
         let field = self.regular.field_at(&self.part, harmonics);
-        let value = |place: &Place| match place {
-            Place::Free(row) => field.value(*row),
-            Place::Shaft(k) => border[*k],
+        let value = |place: &SpaceRow| match place {
+            SpaceRow::Free(row) => field.value(*row),
+            SpaceRow::Shaft(k) => border[*k],
         };
         self.places.iter().map(value).collect()
     }
@@ -233,12 +233,12 @@ impl SpaceDefect {
         lacking.solve(&mut moved, 1);
         let rows = self.places[self.n_rows..].iter().zip(moved);
         let loads = rows.filter_map(|(place, value)| match place {
-            Place::Free(row) => {
+            SpaceRow::Free(row) => {
                 let mut force = [0.0; 3];
                 force[row % 3] = value;
                 Some(NodalLoad { node: row / 3, force })
             }
-            Place::Shaft(_) => None,
+            SpaceRow::Shaft(_) => None,
         });
         let harmonics = &mut x[..self.regular.harmonic_len()];
         self.regular.add_loads(&loads.collect::<Vec<_>>(), harmonics);

@@ -3,7 +3,7 @@
 
 use contact::NodalWeights;
 use solver::LinearSolver;
-use solver::cyclic::{PairWeights, Patch};
+use solver::cyclic::{PairWeights, PatchWeights};
 
 use super::defect_step::{DefectFactor, DefectStep};
 use super::factor::CyclicFactor;
@@ -14,7 +14,7 @@ use crate::vectors::dot;
 /// Contacts as the responses of a raceway meet them.
 struct Touch {
     /// One by contact, of all its functionals.
-    patches: Vec<Patch>,
+    patches: Vec<PatchWeights>,
     /// Motion of each functional of the contacts under unit forces of the mount, `[n][n_mount]`.
     by_mount: Vec<Vec<f64>>,
     /// M^-1 times these, with M the border's compliance; empty without a border.

@@ -117,11 +117,6 @@ impl Ports {
         }
     }
 
-    /// Functionals of contacts, then mount.
-    pub fn all<'a>(&'a self, held: &'a HeldRing) -> Vec<&'a SparseLoad> {
-        self.contacts.iter().chain(&held.mount.rows).collect()
-    }
-
     /// Values of contacts and mount by what measures functionals.
     pub fn values(&self, held: &HeldRing, measure: impl FnOnce(&[&SparseLoad]) -> Vec<f64>) -> Vec<f64> {
         self.values_with(&[], held, measure)

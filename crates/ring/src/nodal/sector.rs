@@ -1,9 +1,9 @@
-//! A ring in sectors cut by angle: its columns stay by sector.
+//! A ring in sectors cut by angle: right-hand sides stay by sector until a step ends.
 
 use solver::SectorBordered;
 
-use super::columns::{Columns, Moved, NodalBody, NodalSolver, Ports, column_compliance};
-use super::sector_columns::{Motions, SectorFactor, StepColumns};
+use super::columns::{Columns, Moved, NodalBody, NodalSolver, Ports};
+use super::sector_columns::{SectorFactor, StepHalves};
 use crate::body::HeldRing;
 use crate::error::RingError;
 use crate::matrices::NodalMatrices;
@@ -17,12 +17,6 @@ pub type SectorBody = NodalBody<SectorSolver>;
 /// The sectors, which solve themselves.
 pub struct SectorSolver(Substructures);
 
-/// The factor of the sectors and the compliance of the mount, row-major.
-pub struct SectorsFactored {
-    factor: SectorFactor,
-    mount_compliance: Vec<f64>,
-}
-
 impl SectorBody {
     /// Cuts, assembles and analyses a held ring. Collective.
     pub fn new(ring: &RingModel, held: HeldRing, sectors: Sectors) -> Result<SectorBody, RingError> {
@@ -35,7 +29,7 @@ impl SectorBody {
 }
 
 impl NodalSolver for SectorSolver {
-    type Columns = SectorsFactored;
+    type Columns = SectorFactor;
 
     fn matrices(&self) -> &dyn NodalMatrices {
         &self.0
@@ -49,7 +43,7 @@ impl NodalSolver for SectorSolver {
         format!("sector ({})", self.0.note())
     }
 
-    fn factor(&self, held: &HeldRing, coefficients: [f64; 2]) -> Result<SectorsFactored, RingError> {
+    fn factor(&self, held: &HeldRing, coefficients: [f64; 2]) -> Result<SectorFactor, RingError> {
         let inner = self.0.factor(coefficients)?;
         let [border, corner] = held.nodes(self.matrices()).border(coefficients);
         let columns = border.chunks_exact(held.coordinates.free().len().max(1));
@@ -60,59 +54,35 @@ impl NodalSolver for SectorSolver {
                 side: held.name,
                 source,
             })?;
-        let factor = SectorFactor::new(bordered, &held.mount.rows);
-        Ok(SectorsFactored {
-            mount_compliance: factor.mount_compliance(&held.mount.rows),
-            factor,
-        })
+        Ok(SectorFactor::new(bordered, &held.mount.rows))
     }
 }
 
-impl SectorsFactored {
-    fn moved(&self, motions: Motions) -> Moved {
-        let size = motions.predicted.len();
-        let contacts = motions.by_contacts.len() / size.max(1);
-        Moved {
-            compliance: column_compliance([size, contacts], &self.mount_compliance, |i, j| {
-                motions.by_contacts[contacts * i + j]
-            }),
-            predicted: motions.predicted,
-        }
-    }
-}
-
-impl Columns for SectorsFactored {
-    type Predictor = StepColumns;
+impl Columns for SectorFactor {
+    type Predictor = StepHalves;
 
     const BY_TABLE: bool = false;
 
     fn bytes(&self) -> usize {
-        self.factor.bytes()
+        self.bytes()
     }
 
-    fn begin(&self, held: &HeldRing, side: Vec<f64>, ports: &Ports) -> (StepColumns, Moved) {
-        let (columns, motions) = self.factor.prepare(&side, &ports.contacts, &ports.all(held));
-        (columns, self.moved(motions))
+    fn begin(&self, _: &HeldRing, side: Vec<f64>, ports: &Ports) -> (StepHalves, Moved) {
+        let halves = self.prepare(&side, &ports.contacts);
+        let moved = self.moved(&halves);
+        (halves, moved)
     }
 
-    fn move_contacts(&self, held: &HeldRing, columns: &mut StepColumns, ports: &Ports) -> Moved {
-        let motions = self
-            .factor
-            .move_contacts(columns, &ports.contacts, &ports.all(held));
-        self.moved(motions)
+    fn move_contacts(&self, _: &HeldRing, halves: &mut StepHalves, ports: &Ports) -> Moved {
+        self.move_contacts(halves, &ports.contacts);
+        self.moved(halves)
     }
 
-    fn add_load(
-        &self,
-        held: &HeldRing,
-        columns: &mut StepColumns,
-        load: Vec<f64>,
-        ports: &Ports,
-    ) -> Vec<f64> {
-        self.factor.add_load(columns, &load, &ports.all(held))
+    fn add_load(&self, _: &HeldRing, halves: &mut StepHalves, load: Vec<f64>, _: &Ports) -> Vec<f64> {
+        self.add_load(halves, &load)
     }
 
-    fn increment(&self, _: &HeldRing, columns: &StepColumns, _: &Ports, forces: PortForces<'_>) -> Vec<f64> {
-        self.factor.increment(columns, forces.contacts, forces.mount)
+    fn increment(&self, _: &HeldRing, halves: &StepHalves, _: &Ports, forces: PortForces<'_>) -> Vec<f64> {
+        self.increment(halves, forces.contacts, forces.mount)
     }
 }

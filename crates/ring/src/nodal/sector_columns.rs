@@ -1,101 +1,82 @@
-//! Solves of a ring in sectors whose solutions stay by sector: of the columns of contacts and mount, ranks exchange
-//! what contacts and mount measure, and of an increment its sum. Memory: one number per dof owned and column.
+//! Solves of a ring in sectors that stop half way: until the forces of a step are known, right-hand sides stay swept
+//! forwards, by sector. What contacts and mount move are products of them ([`solver::SectorHalves`]).
 
-use solver::{BorderedColumns, SectorBordered};
+use solver::{BorderedHalves, SectorBordered};
 
+use super::columns::{Moved, column_compliance};
 use crate::sparse::SparseLoad;
 
-/// The factor of one ring in sectors, and the solutions under the mount's functionals.
+/// The factor of one ring in sectors, and the mount's functionals half solved.
 pub struct SectorFactor {
     /// The factor, with the border of the shaft's dofs.
-    pub solver: SectorBordered,
-    mount: BorderedColumns,
+    solver: SectorBordered,
+    mount: BorderedHalves,
+    /// Compliance of the mount, row-major.
+    mount_compliance: Vec<f64>,
 }
 
-/// A step's predictor, and the increments per unit contact force, by sector.
-pub struct StepColumns {
-    /// The predictor, and behind it the contacts where they were when it was solved for.
-    predictor: BorderedColumns,
-    /// The contacts where they are now, if they have moved since.
-    moved: Option<BorderedColumns>,
-}
-
-/// Motions of contacts and mount under a step's columns.
-pub struct Motions {
-    /// Under the predictor, `[functionals]`.
-    pub predicted: Vec<f64>,
-    /// Per unit contact force, row-major `[functionals][n_contacts]`.
-    pub by_contacts: Vec<f64>,
+/// A step's predictor and the functionals of its contacts.
+pub struct StepHalves {
+    predictor: BorderedHalves,
+    contacts: BorderedHalves,
 }
 
 impl SectorFactor {
-    /// Solves for the mount once. Collective, as all here.
+    /// Sweeps the mount's functionals once. Collective, as all here.
     pub fn new(solver: SectorBordered, mount: &[SparseLoad]) -> SectorFactor {
+        let [_, mount] = solver.halves(&[], mount);
         SectorFactor {
-            mount: solver.columns(&[], mount),
+            mount_compliance: mount.products(&mount),
+            mount,
             solver,
         }
     }
 
-    /// Compliance of the mount, row-major.
-    pub fn mount_compliance(&self, mount: &[SparseLoad]) -> Vec<f64> {
-        let all: Vec<&SparseLoad> = mount.iter().collect();
-        self.solver.measure(&self.mount, &all)
+    /// Predictor under the right-hand side `side`, `[n]`, and contacts.
+    pub fn prepare(&self, side: &[f64], contacts: &[SparseLoad]) -> StepHalves {
+        let [predictor, contacts] = self.solver.halves(side, contacts);
+        StepHalves { predictor, contacts }
     }
 
-    /// Predictor under the right-hand side `side`, `[n]`, and columns of the contacts; `all` are the functionals to
-    /// measure.
-    pub fn prepare(
-        &self,
-        side: &[f64],
-        contacts: &[SparseLoad],
-        all: &[&SparseLoad],
-    ) -> (StepColumns, Motions) {
-        let predictor = self.solver.columns(side, contacts);
-        let measured = self.solver.measure(&predictor, all);
-        let rows = measured.chunks_exact(1 + contacts.len());
-        let motions = Motions {
-            predicted: rows.clone().map(|row| row[0]).collect(),
-            by_contacts: rows.flat_map(|row| &row[1..]).copied().collect(),
-        };
-        let moved = None;
-        (StepColumns { predictor, moved }, motions)
-    }
-
-    /// Columns of contacts that have moved, in place of the former; the predictor stays.
-    pub fn move_contacts(
-        &self,
-        columns: &mut StepColumns,
-        contacts: &[SparseLoad],
-        all: &[&SparseLoad],
-    ) -> Motions {
-        columns.moved = None;
-        columns.predictor = columns.predictor.first();
-        let moved = self.solver.columns(&[], contacts);
-        let motions = Motions {
-            predicted: self.solver.measure(&columns.predictor, all),
-            by_contacts: self.solver.measure(&moved, all),
-        };
-        columns.moved = Some(moved);
-        motions
-    }
-
-    /// Adds the solution of a load to a predictor; returns the motions it makes.
-    pub fn add_load(&self, columns: &mut StepColumns, load: &[f64], all: &[&SparseLoad]) -> Vec<f64> {
-        let more = self.solver.columns(load, &[]);
-        columns.predictor.add_to_first(&more);
-        self.solver.measure(&more, all)
-    }
-
-    /// Predictor and columns under forces on contacts and mount, `[n]`.
-    pub fn increment(&self, columns: &StepColumns, contacts: &[f64], mount: &[f64]) -> Vec<f64> {
-        let (predictor, mount) = (&columns.predictor, (&self.mount, mount));
-        match &columns.moved {
-            None => self
-                .solver
-                .sum(&[(predictor, &[&[1.0], contacts].concat()), mount]),
-            Some(moved) => self.solver.sum(&[(predictor, &[1.0]), (moved, contacts), mount]),
+    /// What contacts and mount see.
+    pub fn moved(&self, halves: &StepHalves) -> Moved {
+        let StepHalves { predictor, contacts } = halves;
+        let own = contacts.products(contacts);
+        let (n, m) = (contacts.n_columns(), self.mount.n_columns());
+        let of_mount = contacts.products(&self.mount);
+        Moved {
+            predicted: self.values(contacts, predictor),
+            compliance: column_compliance([n + m, n], &self.mount_compliance, |i, j| match i < n {
+                true => own[n * i + j],
+                false => of_mount[m * j + i - n],
+            }),
         }
+    }
+
+    /// Values at contacts and mount of the solutions of right-hand sides.
+    fn values(&self, contacts: &BorderedHalves, of: &BorderedHalves) -> Vec<f64> {
+        [contacts.products(of), self.mount.products(of)].concat()
+    }
+
+    /// Contacts elsewhere; the predictor stays.
+    pub fn move_contacts(&self, halves: &mut StepHalves, contacts: &[SparseLoad]) {
+        [_, halves.contacts] = self.solver.halves(&[], contacts);
+    }
+
+    /// Adds a load, `[n]`, to a predictor; returns what contacts and mount move more.
+    pub fn add_load(&self, halves: &mut StepHalves, load: &[f64]) -> Vec<f64> {
+        let [more, _] = self.solver.halves(load, &[]);
+        halves.predictor.add(&more);
+        self.values(&halves.contacts, &more)
+    }
+
+    /// Predictor and contacts under forces on contacts and mount, `[n]`.
+    pub fn increment(&self, halves: &StepHalves, contacts: &[f64], mount: &[f64]) -> Vec<f64> {
+        self.solver.finish(&[
+            (&halves.predictor, &[1.0]),
+            (&halves.contacts, contacts),
+            (&self.mount, mount),
+        ])
     }
 
     /// Bytes on this rank.

@@ -9,7 +9,7 @@ use crate::body::{ElasticBody, frame_load};
 use crate::integrator::StepScheme;
 use crate::matrices::StateVectors;
 use crate::pool::PooledVector;
-use crate::settling::{Change, FrameRounds};
+use crate::settling::{FrameRounds, LoadChange};
 use crate::state::RingState;
 use crate::step::{
     ElasticStep, End, Ended, Feet, FrameTurn, Known, KnownLoad, PortAnswer, PortForces, RACEWAYS, RIGHT_SIDE,
@@ -56,7 +56,6 @@ impl<S: NodalSolver> NodalFactor<S> {
         let [m, k] = held.history(self.scheme);
         let (v, a) = (state.velocity(), state.acceleration());
         let vectors = StateVectors {
-            displacement: state.displacement(),
             velocity: v,
             strained: held.without_rigid_motion(state.displacement()),
             inertial: combined(m, v, a),
@@ -186,7 +185,7 @@ impl<S: NodalSolver> ElasticStep for NodalStep<'_, S> {
         let new = self.factor.frame_load(*turn, self.old, Some(&dw));
         let change = combined([1.0, -1.0], &new, used);
         let [square, new_square] = [&change, &new].map(|x| dot(x, x));
-        if self.rounds.is_settled(&Change { square, new_square }, scale) {
+        if self.rounds.is_settled(&LoadChange { square, new_square }, scale) {
             self.increment = Some(dw);
             return Settling::Settled;
         }

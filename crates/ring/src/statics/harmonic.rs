@@ -12,7 +12,7 @@ use crate::harmonic::defect_change::Changes;
 use crate::harmonic::periodic::{Defective, HeldSectors, Periodic};
 use crate::memory::{MotionMemory, RingMemory};
 use crate::model::{Hold, RingModel};
-use crate::support::Support;
+use crate::support::AppliedHold;
 
 /// Columns of a block that harmonics solve for: more take memory and save nothing.
 const BLOCK: usize = 8;
@@ -108,7 +108,7 @@ impl HeldStiffness for HarmonicStiffness {
         Some(self.motion)
     }
 
-    fn factor(self: Box<Self>, name: &'static str, ring: &RingModel, support: &Support) -> Factored {
+    fn factor(self: Box<Self>, name: &'static str, ring: &RingModel, support: &AppliedHold) -> Factored {
         self.factored(ring.hold)
             .map_err(|source| named(source, name, ring, support))
     }

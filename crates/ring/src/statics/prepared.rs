@@ -9,7 +9,7 @@ use crate::body::{Held, Partner};
 use crate::error::RingError;
 use crate::harmonic::periodic::Periodic;
 use crate::model::{Backend, Hold, RingModel};
-use crate::support::Support;
+use crate::support::AppliedHold;
 
 /// What a ring is made with for statics.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -27,7 +27,7 @@ pub struct StaticSettings {
 /// A ring before its factorisation.
 pub struct Prepared {
     /// Its hold.
-    pub(super) support: Support,
+    pub(super) support: AppliedHold,
     /// Its stiffness.
     pub stiffness: Box<dyn HeldStiffness>,
 }
@@ -45,7 +45,7 @@ impl Prepared {
         let places = ring.places(name, backend)?;
         let weights = fem::surface::facet_node_weights(mesh, mesh.group(ring.held_group));
         if let Backend::Sector(sectors) = backend {
-            let support = Support::new(mesh, ring.hold, weights, places);
+            let support = AppliedHold::new(mesh, ring.hold, weights, places);
             let stiffness = SectorStiffness::new(name, ring, &support, numbers, (sectors, n_contacts))?;
             return Ok(Prepared {
                 support,
@@ -64,12 +64,12 @@ impl Prepared {
                 };
                 let stiffness = HarmonicStiffness::new(name, ring, periodic, (&held_nodes, how))?;
                 Ok(Prepared {
-                    support: Support::unfixed(mesh, ring.hold, weights, places),
+                    support: AppliedHold::unfixed(mesh, ring.hold, weights, places),
                     stiffness: Box::new(stiffness),
                 })
             }
             Err(why) => {
-                let support = Support::new(mesh, ring.hold, weights, places);
+                let support = AppliedHold::new(mesh, ring.hold, weights, places);
                 let stiffness = SparseStiffness::new(name, ring, &support, numbers, (why, n_contacts))?;
                 Ok(Prepared {
                     support,

@@ -8,7 +8,7 @@ use crate::memory::RingMemory;
 use crate::model::{RingModel, Sectors};
 use crate::rank_memory::{RankMemory, Share};
 use crate::substructures::Substructures;
-use crate::support::Support;
+use crate::support::AppliedHold;
 
 /// Sectors cut by angle.
 pub(super) struct SectorStiffness {
@@ -21,7 +21,7 @@ impl SectorStiffness {
     pub fn new(
         name: &'static str,
         ring: &RingModel,
-        support: &Support,
+        support: &AppliedHold,
         numbers: Numbers,
         (sectors, n_contacts): (Sectors, usize),
     ) -> Result<SectorStiffness, RingError> {
@@ -63,7 +63,7 @@ impl HeldStiffness for SectorStiffness {
         Some(&self.parts)
     }
 
-    fn factor(self: Box<Self>, name: &'static str, ring: &RingModel, support: &Support) -> Factored {
+    fn factor(self: Box<Self>, name: &'static str, ring: &RingModel, support: &AppliedHold) -> Factored {
         match self.parts.factor([0.0, 1.0]) {
             Ok(factor) => Ok((Box::new(factor) as Box<dyn LinearSolver>, None)),
             Err(RingError::Solver { source, .. }) => Err(named(source, name, ring, support)),

@@ -12,7 +12,7 @@ use crate::error::RingError;
 use crate::inventory::Inventory;
 use crate::memory::RingMemory;
 use crate::model::{Hold, RingModel};
-use crate::support::Support;
+use crate::support::AppliedHold;
 use crate::vectors::dot;
 
 /// Lap: assembly of the stiffness.
@@ -22,7 +22,7 @@ pub const FACTOR: &str = "factor";
 
 /// Factored stiffness of one ring.
 pub struct RingSolver {
-    support: Support,
+    support: AppliedHold,
     factor: Box<dyn LinearSolver>,
     /// Columns that are solved for together.
     block: usize,

@@ -8,7 +8,7 @@ use crate::error::RingError;
 use crate::memory::{MotionMemory, RingMemory};
 use crate::model::RingModel;
 use crate::sparse::elimination_order;
-use crate::support::Support;
+use crate::support::AppliedHold;
 
 /// Lower triangle, its analysis, and why the ring is not solved by harmonics.
 pub(super) struct SparseStiffness {
@@ -24,7 +24,7 @@ impl SparseStiffness {
     pub fn new(
         name: &'static str,
         ring: &RingModel,
-        support: &Support,
+        support: &AppliedHold,
         numbers: Numbers,
         (why, n_contacts): (String, usize),
     ) -> Result<SparseStiffness, RingError> {
@@ -74,7 +74,7 @@ impl HeldStiffness for SparseStiffness {
         self.symbolic.flops()
     }
 
-    fn factor(self: Box<Self>, name: &'static str, ring: &RingModel, support: &Support) -> Factored {
+    fn factor(self: Box<Self>, name: &'static str, ring: &RingModel, support: &AppliedHold) -> Factored {
         let factor = self.symbolic.factor(&self.lower);
         let factor = factor.map_err(|source| named(source, name, ring, support))?;
         Ok((Box::new(factor) as Box<dyn LinearSolver>, None))

@@ -6,7 +6,7 @@ use crate::error::RingError;
 use crate::memory::{MotionMemory, RingMemory};
 use crate::model::RingModel;
 use crate::substructures::Substructures;
-use crate::support::Support;
+use crate::support::AppliedHold;
 
 /// What the matrices of a [`super::Prepared`] ring hold.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -51,7 +51,7 @@ pub trait HeldStiffness: Send {
     }
 
     /// Factors the free dofs of `support`. Collective.
-    fn factor(self: Box<Self>, name: &'static str, ring: &RingModel, support: &Support) -> Factored;
+    fn factor(self: Box<Self>, name: &'static str, ring: &RingModel, support: &AppliedHold) -> Factored;
 }
 
 /// A factor of the free dofs of a ring, and of a ring with a defect the iterations it stands for, see
@@ -63,7 +63,7 @@ pub(crate) fn named(
     error: SolverError,
     side: &'static str,
     ring: &RingModel,
-    support: &Support,
+    support: &AppliedHold,
 ) -> RingError {
     match error {
         SolverError::NotPositiveDefinite { row, .. } => RingError::NotHeld {

@@ -6,7 +6,7 @@ use solver::cyclic::PointStencil;
 use solver::{CyclicRing, CyclicStencil};
 
 use crate::error::RingError;
-use crate::harmonic::periodic::{Sectors, couplings, usable};
+use crate::harmonic::periodic::{PeriodicSectors, couplings, usable};
 use crate::model::RingModel;
 
 /// Weights of one sector.
@@ -64,5 +64,5 @@ fn whole_ring(
     periodicity: &Periodicity,
     side: &'static str,
 ) -> Result<CyclicRing, RingError> {
-    Ok(Sectors::assemble(ring, &ring.mesh, periodicity, side)?.ring)
+    Ok(PeriodicSectors::assemble(ring, &ring.mesh, periodicity, side)?.ring)
 }

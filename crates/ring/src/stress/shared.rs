@@ -31,20 +31,20 @@ pub struct SharedStress {
     places: StressPlaces,
     points_per_element: usize,
     /// The sectors this rank owns.
-    parts: Vec<Part>,
+    parts: Vec<OwnedSector>,
     /// What rank 0 puts together.
-    whole: Whole,
+    whole: JoinedStress,
 }
 
 /// One sector.
-struct Part {
+struct OwnedSector {
     /// Its nodes.
     nodes: Vec<usize>,
     recovery: StressRecovery,
 }
 
 /// How the stress of the ring is made of that of its sectors.
-struct Whole {
+struct JoinedStress {
     /// Values of each place of a sector: 1 per node, or the points of an element.
     per_place: usize,
     /// Nodes or elements of each sector; on other ranks than 0 empty.
@@ -68,13 +68,13 @@ impl SharedStress {
         let (mesh, comm) = (&ring.mesh, sectors.comm);
         let cut = ring.sector_cut(side, sectors)?;
         let n_sectors = cut.nodes.len();
-        let part = |s: usize| -> Result<Part, RingError> {
+        let part = |s: usize| -> Result<OwnedSector, RingError> {
             let (elements, nodes) = (&cut.elements[s], wide(&cut.nodes[s]));
             let recovery = StressRecovery::new(&mesh.part(elements, &nodes), &ring.material)
                 .map_err(|source| RingError::Fem { side, source })?;
-            Ok(Part { nodes, recovery })
+            Ok(OwnedSector { nodes, recovery })
         };
-        let parts: Result<Vec<Part>, RingError> = comm.share(n_sectors).map(part).collect();
+        let parts: Result<Vec<OwnedSector>, RingError> = comm.share(n_sectors).map(part).collect();
         let elsewhere = |rank, message| RingError::OnRank { rank, message };
         let parts = comm.agree(parts, elsewhere)?;
         let points_per_element = fem::quadrature::stiffness_rule(mesh.kind).points.len();
@@ -90,7 +90,7 @@ impl SharedStress {
             places,
             points_per_element,
             parts,
-            whole: Whole {
+            whole: JoinedStress {
                 per_place,
                 lengths: of_sectors.lengths.iter().map(|n| per_place * n).collect(),
                 places: of_sectors.lists,
@@ -128,7 +128,7 @@ impl SharedStress {
     /// Stress of the sectors this rank owns, as [`Self::gather`] takes it, from displacements of the ring, m, `[3
     /// n_nodes]`.
     pub fn recover(&self, u: &[f64]) -> Vec<Vec<[f64; 6]>> {
-        let of_part = |part: &Part| {
+        let of_part = |part: &OwnedSector| {
             let nodes = part.nodes.iter().flat_map(|&node| &u[3 * node..3 * node + 3]);
             let own: Vec<f64> = nodes.copied().collect();
             match self.places {

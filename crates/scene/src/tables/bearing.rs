@@ -85,6 +85,8 @@ pub struct Bearing {
     pub width: f64,
     /// Azimuth of the first ball, rad, from +x towards +y.
     pub first_ball_azimuth: f64,
+    /// Whether it has a contact angle in its scene, as angular contact bearings do: they carry in one direction.
+    pub has_contact_angle: bool,
 }
 
 /// Largest groove radius over ball diameter: catalogue bearings have 0.515 to 0.53.
@@ -117,6 +119,7 @@ impl RawBearing {
             outside_diameter: self.outside_diameter.si(),
             width: self.width.si(),
             first_ball_azimuth: self.first_ball_azimuth.as_ref().map_or(0.0, Quantity::si),
+            has_contact_angle: self.contact_angle.as_ref().is_some_and(|angle| angle.si() > 0.0),
         };
         if problems.len() == before {
             self.check_diameters(&raceways, problems);

@@ -12,10 +12,10 @@ use body::matrix::MatrixFiles;
 use input::{LENGTH, MASS, Problems, Quantity, RATE, STIFFNESS};
 use serde::Deserialize;
 
-use super::materials::{Material, RawMaterial};
+use super::materials::{MaterialProperties, RawMaterial};
 use super::ring::{MeshFiles, Support};
 use super::ring_name::RingName;
-use super::solver::Backend;
+use super::solver::BackendChoice;
 use super::unit_key::unit_of;
 
 /// Orders round a seat without a word.
@@ -110,7 +110,7 @@ pub enum BodySource {
         /// Length of one unit of the file, m.
         mesh_unit: f64,
         /// What it is made of.
-        material: Material,
+        material: MaterialProperties,
         /// Facet groups that are held.
         fixed: Vec<String>,
     },
@@ -131,7 +131,7 @@ pub struct BodyContext<'a> {
     /// Whether the outer ring turns.
     pub turns_outer: bool,
     /// Linear solver of the rings.
-    pub backend: Backend,
+    pub backend: BackendChoice,
     /// Whether the scene moves in time, or asks for natural modes.
     pub moves: bool,
     /// Effects of the scene.

@@ -15,7 +15,7 @@ use serde::Deserialize;
 
 use super::balls::BallMotion;
 use super::bearing::Bearing;
-use super::materials::Material;
+use super::materials::MaterialProperties;
 use super::pocket::{PocketFit, PocketKeys};
 
 /// How the cage moves.
@@ -82,7 +82,7 @@ impl RawCage {
         &self,
         (balls, is_dynamic): (BallMotion, bool),
         bearing: Option<&Bearing>,
-        ball: Option<&Material>,
+        ball: Option<&MaterialProperties>,
         problems: &mut Problems,
     ) -> Option<Cage> {
         if self.motion == CageMotion::Kinematic {
@@ -136,7 +136,7 @@ impl RawCage {
     /// Stiffness of a pocket of this clearance, m, with a ball of this material and diameter, m.
     fn stiffness(
         &self,
-        pocket: Option<(f64, &Material)>,
+        pocket: Option<(f64, &MaterialProperties)>,
         diameter: f64,
         problems: &mut Problems,
     ) -> Option<f64> {
@@ -372,7 +372,7 @@ impl RawCage {
         let CageTube { bore, outside, width } = tube?;
         Some(Some(Land {
             side,
-            radius: 0.5 * if side == Side::Inner { bore } else { outside },
+            radius: 0.5 * side.choose(bore, outside),
             width,
             clearance: clearance?,
             viscosity: viscosity.map_or(0.0, Quantity::si),

@@ -1,11 +1,12 @@
 //! `[contact]`: how balls and raceways push on each other.
 
+use dynamics::ContactMode;
 use input::{HERTZ_STIFFNESS, LENGTH, Problems, Quantity};
 use serde::Deserialize;
 
 use super::balls::BallMotion;
 use super::bearing::Bearing;
-use super::materials::{Material, Materials};
+use super::materials::{MaterialProperties, Materials};
 
 /// As typed.
 #[derive(Debug, Deserialize)]
@@ -28,18 +29,6 @@ pub enum BallElasticity {
     Sphere,
     /// Nothing: Hertz's law alone.
     HalfSpace,
-}
-
-/// How the raceways' shape, the forces on the rings and the local compliance are represented.
-#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq)]
-#[serde(rename_all = "snake_case")]
-pub enum ContactMode {
-    /// Exact torus, force spread over a Hertz patch, local compliance matched: accurate on any mesh.
-    Patch,
-    /// The mesh's own facets and their nodes, as in the paper; counts the local compliance twice.
-    Facet,
-    /// Exact torus, rings do not deform: the Jones-Harris limit.
-    Rigid,
 }
 
 /// How balls and raceways push on each other.
@@ -169,6 +158,6 @@ impl RawContact {
 /// E* sqrt(D_w), N/m^1.5, with 1/E* = the sum of (1 - nu^2)/E: the size of a Hertz stiffness, within a few
 /// times.
 fn hertz_scale(bearing: &Bearing, materials: &Materials) -> f64 {
-    let compliance = |m: Material| (1.0 - m.poisson_ratio * m.poisson_ratio) / m.young_modulus;
+    let compliance = |m: MaterialProperties| (1.0 - m.poisson_ratio * m.poisson_ratio) / m.young_modulus;
     bearing.ball_diameter.sqrt() / (compliance(materials.rings) + compliance(materials.balls))
 }

@@ -4,6 +4,7 @@
 //! step. References: Chung and Hulbert, J. Appl. Mech. 60 (1993) 371, doi:10.1115/1.2900803; Hilbert, Hughes
 //! and Taylor, Earthq. Eng. Struct. Dyn. 5 (1977) 283, doi:10.1002/eqe.4290050306 (`alpha` here is minus theirs).
 
+use dynamics::interactions::discrete_gradient::ContactScheme;
 use input::{Problems, Quantity, TIME, ten_digits};
 use serde::Deserialize;
 
@@ -69,16 +70,6 @@ pub enum IntegratorChoice {
         /// Share of the end's acceleration in the velocity, 1/2 (no damping) to 1.
         gamma: f64,
     },
-}
-
-/// How contact forces are evaluated over a step.
-#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq)]
-#[serde(rename_all = "snake_case")]
-pub enum ContactScheme {
-    /// The mean force whose work is exactly the change of the contact's energy.
-    DiscreteGradient,
-    /// Forces of the ends, weighted by the scheme: for comparison, it feeds energy into contacts that open.
-    Pointwise,
 }
 
 /// Motion in time.

@@ -108,13 +108,13 @@ fn example(message: &str) -> Option<DeValue<'static>> {
 }
 
 /// The place and the name of a key.
-type Entry = (String, Range<usize>);
+type KeyPlace = (String, Range<usize>);
 
 /// Puts a value into the table at `span` that lacks the key; the whole document is such a table too.
 fn insert(
     table: &mut DeTable<'_>,
     span: &Range<usize>,
-    key: Entry,
+    key: KeyPlace,
     value: Spanned<DeValue<'static>>,
 ) -> bool {
     let name = key.0.clone();

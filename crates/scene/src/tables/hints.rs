@@ -78,7 +78,7 @@ pub fn elsewhere(name: &str) -> Option<String> {
     if let Some(block) = reference::all().into_iter().find(|block| is_table(&block.table)) {
         return Some(format!("write [{}]", block.table));
     }
-    let of_scene = |block: &reference::Block| block.table.is_empty() && block.keys().contains(&name);
+    let of_scene = |block: &reference::ReferenceTable| block.table.is_empty() && block.keys().contains(&name);
     if reference::all().iter().any(of_scene) {
         return Some(format!("{name} stands at the top, before the first table"));
     }

@@ -60,14 +60,14 @@ pub struct RawNumbers {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Materials {
     /// Both rings.
-    pub rings: Material,
+    pub rings: MaterialProperties,
     /// All balls.
-    pub balls: Material,
+    pub balls: MaterialProperties,
 }
 
 /// A linear elastic, isotropic material.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Material {
+pub struct MaterialProperties {
     /// Young's modulus E, Pa.
     pub young_modulus: f64,
     /// Poisson's ratio nu, dimensionless, 0 to 0.49.
@@ -92,7 +92,7 @@ impl Materials {
 pub struct NamedMaterial {
     /// The first is that of messages.
     names: &'static [&'static str],
-    material: Material,
+    material: MaterialProperties,
     source: &'static str,
 }
 
@@ -100,7 +100,7 @@ pub struct NamedMaterial {
 static NAMED: [NamedMaterial; 4] = [
     NamedMaterial {
         names: &["bearing steel", "100Cr6", "52100", "GCr15", "SUJ2"],
-        material: Material {
+        material: MaterialProperties {
             young_modulus: 207e9,
             poisson_ratio: 0.3,
             density: 7800.0,
@@ -111,7 +111,7 @@ static NAMED: [NamedMaterial; 4] = [
     },
     NamedMaterial {
         names: &["silicon nitride", "Si3N4"],
-        material: Material {
+        material: MaterialProperties {
             young_modulus: 310e9,
             poisson_ratio: 0.26,
             density: 3200.0,
@@ -122,7 +122,7 @@ static NAMED: [NamedMaterial; 4] = [
     },
     NamedMaterial {
         names: &["M50"],
-        material: Material {
+        material: MaterialProperties {
             young_modulus: 214e9,
             poisson_ratio: 0.3,
             density: 7870.0,
@@ -133,7 +133,7 @@ static NAMED: [NamedMaterial; 4] = [
     },
     NamedMaterial {
         names: &["440C"],
-        material: Material {
+        material: MaterialProperties {
             young_modulus: 200e9,
             poisson_ratio: 0.28,
             density: 7700.0,
@@ -164,7 +164,12 @@ impl RawMaterials {
 
 impl RawMaterial {
     /// Checks the material of a table; `assumed` is told the numbers of names.
-    pub fn check(&self, table: &str, problems: &mut Problems, assumed: &mut Vec<String>) -> Material {
+    pub fn check(
+        &self,
+        table: &str,
+        problems: &mut Problems,
+        assumed: &mut Vec<String>,
+    ) -> MaterialProperties {
         let named = match self {
             RawMaterial::Named(named) => named,
             RawMaterial::Numbers(numbers) => return numbers.check(table, problems),
@@ -245,7 +250,7 @@ fn meant(text: &str) -> Option<&'static str> {
 }
 
 impl RawNumbers {
-    fn check(&self, table: &str, problems: &mut Problems) -> Material {
+    fn check(&self, table: &str, problems: &mut Problems) -> MaterialProperties {
         let (modulus, nu, density) = (self.young_modulus.si(), self.poisson_ratio, self.density.si());
         let key = format!("{table}.young_modulus");
         problems.require(
@@ -283,7 +288,7 @@ impl RawNumbers {
         if let Some(strength) = &self.yield_strength {
             problems.require_positive(strength, &format!("{table}.yield_strength"), "a strength");
         }
-        Material {
+        MaterialProperties {
             young_modulus: modulus,
             poisson_ratio: nu,
             density,

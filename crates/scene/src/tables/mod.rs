@@ -91,8 +91,10 @@ mod unit_key;
 
 use std::path::{Path, PathBuf};
 
+pub use dynamics::ContactMode;
 use dynamics::effects::Effects;
 use dynamics::interactions::cage::Cage;
+pub use dynamics::interactions::discrete_gradient::ContactScheme;
 use dynamics::kinematics::{BallSpeeds, RingSpeeds};
 use serde::Deserialize;
 use serde::de::IgnoredAny;
@@ -102,21 +104,21 @@ pub use self::balls::BallMotion;
 pub use self::bearing::Bearing;
 pub use self::body::{BodySource, SceneBody};
 pub(crate) use self::contact::unusual_stiffnesses;
-pub use self::contact::{BallElasticity, Contact, ContactMode};
+pub use self::contact::{BallElasticity, Contact};
 pub use self::difference::difference;
-pub use self::dynamic::{ContactScheme, Dynamic, IntegratorChoice};
+pub use self::dynamic::{Dynamic, IntegratorChoice};
 pub use self::error::SceneError;
 pub use self::gauges::{Across, GaugeProbe, Tachometer};
 pub use self::heat::{BODIES, FrictionLaw, Heat, SURROUNDINGS};
 pub use self::life::{Life, LifeGrooves};
 pub use self::locate::locate;
 pub use self::lubricant::{Lubrication, Roughness};
-pub use self::materials::{Material, Materials};
+pub use self::materials::{MaterialProperties, Materials};
 pub use self::modes::{ModeBody, ModeSupport, Modes};
 pub use self::oil::Oil;
 pub use self::output::{
-    CycleDamage, DamageNodes, DamageStress, Every, KeptFields, Output, OutputReduction, OutputRegion,
-    Precision, RingFrame, StressOutput,
+    CycleDamage, DamageNodes, DamageStress, Every, FieldPrecision, KeptFields, OutputReduction, OutputRegion,
+    OutputSettings, RingFrame, StressOutput,
 };
 pub use self::probes::{Axes, ContactProbe, NodeProbe, Probes, SectionPoint};
 pub use self::profiles::SurfaceProfiles;
@@ -124,13 +126,13 @@ pub use self::quasi_static::QuasiStatic;
 pub use self::ring::{FlexibleRing, MeshFiles, Ring, Support};
 pub use self::ring_inertia::RingInertia;
 pub use self::ring_name::RingName;
-pub use self::section::{Section, SectionElement};
+pub use self::section::{MeshedSection, SectionElement};
 pub use self::several::{
     AnyScene, BearingOnShaft, CommonShaft, ON_SHAFT, Pairing, RigidShaft, SeveralScene, ShaftKind, ShaftLoad,
     SpringPairing, names_of_bearings, overrides_of_types,
 };
-pub use self::shaft::{Motion, Shaft};
-pub use self::solver::{Backend, Solver};
+pub use self::shaft::{Shaft, ShaftMotion};
+pub use self::solver::{BackendChoice, Solver};
 pub use self::start::Start;
 pub use self::stress::Stress;
 pub use self::stress_probes::StressLine;
@@ -247,7 +249,7 @@ pub struct Scene {
     /// How the equations are solved.
     pub solver: Solver,
     /// What is written.
-    pub output: Output,
+    pub output: OutputSettings,
     /// How stress is computed.
     pub stress: Stress,
     /// Single numbers that are written at every step.
@@ -274,7 +276,7 @@ impl Scene {
         mesh_files: MeshFiles,
     ) -> Result<Scene, SceneError> {
         let whole = include::whole(text, path, overrides)?;
-        let source = Source {
+        let source = TextSource {
             path,
             overrides,
             mesh_files,
@@ -317,14 +319,14 @@ pub fn whole_text(text: &str, path: &Path, overrides: &[String]) -> Result<Strin
 }
 
 /// Where a text comes from and how strictly it is checked.
-struct Source<'a> {
+struct TextSource<'a> {
     path: &'a Path,
     overrides: &'a [String],
     mesh_files: MeshFiles,
     messages: Messages<'a>,
 }
 
-impl Source<'_> {
+impl TextSource<'_> {
     /// The tables of the text, or all that is wrong with their format.
     fn read(&self, text: &str, document: &DocumentMut) -> Result<RawScene, SceneError> {
         self.messages

@@ -5,8 +5,8 @@
 use input::{Problems, Quantity, RATE};
 use serde::Deserialize;
 
-use super::contact::ContactMode;
-use super::solver::Backend;
+use super::solver::BackendChoice;
+use dynamics::ContactMode;
 
 /// As typed.
 #[derive(Debug, Deserialize)]
@@ -61,12 +61,12 @@ pub struct ModesContext {
     /// Contact mode of the scene.
     pub contact: ContactMode,
     /// How its rings are solved.
-    pub backend: Backend,
+    pub backend: BackendChoice,
 }
 
 impl ModesContext {
     /// What modes need to know of rings that are elastic or not, inner first.
-    pub fn new(flexible: [bool; 2], contact: ContactMode, backend: Backend) -> ModesContext {
+    pub fn new(flexible: [bool; 2], contact: ContactMode, backend: BackendChoice) -> ModesContext {
         ModesContext {
             flexible,
             contact,

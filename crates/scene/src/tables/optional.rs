@@ -8,15 +8,15 @@ use input::Problems;
 use super::balls::BallMotion;
 use super::bearing::Bearing;
 use super::body::{BodyContext, SceneBody, check_bodies};
-use super::contact::ContactMode;
 use super::heat::Heat;
 use super::life::Life;
 use super::lubricant::Lubrication;
 use super::materials::Materials;
 use super::probes::{Probes, ProbesContext};
-use super::solver::Backend;
+use super::solver::BackendChoice;
 use super::stress::{Stress, StressContext};
-use super::{RawScene, Source};
+use super::{RawScene, TextSource};
+use dynamics::ContactMode;
 
 impl RawScene {
     /// A free cage beside balls that move so.
@@ -35,8 +35,8 @@ impl RawScene {
     /// The bodies of both rings, inner first.
     pub(super) fn bodies(
         &self,
-        source: &Source<'_>,
-        backend: Backend,
+        source: &TextSource<'_>,
+        backend: BackendChoice,
         problems: &mut Problems,
         assumed: &mut Vec<String>,
     ) -> [Option<SceneBody>; 2] {

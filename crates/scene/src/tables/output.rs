@@ -26,9 +26,9 @@ use self::region::RawRegion;
 #[serde(deny_unknown_fields, expecting = "the table [output]")]
 pub struct RawOutput {
     stress: Option<StressOutput>,
-    precision: Option<Precision>,
+    precision: Option<FieldPrecision>,
     stress_error: Option<Quantity<STRESS>>,
-    displacement: Option<Precision>,
+    displacement: Option<FieldPrecision>,
     restart_every: Option<i64>,
     compression: Option<i64>,
     tables_every: Option<i64>,
@@ -54,7 +54,7 @@ pub enum StressOutput {
 /// Floating-point size of fields that are not needed to resume a run.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq)]
 #[serde(rename_all = "snake_case")]
-pub enum Precision {
+pub enum FieldPrecision {
     /// 32 bits, seven digits.
     F32,
     /// 64 bits.
@@ -73,15 +73,15 @@ pub enum RingFrame {
 
 /// What is written, and how exactly.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Output {
+pub struct OutputSettings {
     /// Stress fields.
     pub stress: StressOutput,
     /// Size of stress; the state itself is always written in 64 bits.
-    pub precision: Precision,
+    pub precision: FieldPrecision,
     /// Largest error with which stress may be written, Pa; None writes it as its precision has it.
     pub stress_error: Option<f64>,
     /// Size of displacements.
-    pub displacement: Precision,
+    pub displacement: FieldPrecision,
     /// Step files from one with a restart state to the next, at least 1; the first and the last one have it besides.
     pub restart_every: u64,
     /// Level of deflate, 0 (none) to 9.
@@ -99,18 +99,18 @@ pub struct Output {
 }
 
 /// Least error of stress, Pa, by precision: with f32, stress up to 17 GPa is rounded by this alone.
-const LEAST_ERROR: [(Precision, f64, &str); 2] = [
+const LEAST_ERROR: [(FieldPrecision, f64, &str); 2] = [
     (
-        Precision::F32,
+        FieldPrecision::F32,
         1e3,
         "expected at least 1 kPa; precision = \"f64\" allows 1 Pa",
     ),
-    (Precision::F64, 1.0, "expected at least 1 Pa"),
+    (FieldPrecision::F64, 1.0, "expected at least 1 Pa"),
 ];
 
 impl RawOutput {
     /// Checks ranges and fills in defaults.
-    pub fn check(&self, context: OutputContext, problems: &mut Problems) -> Output {
+    pub fn check(&self, context: OutputContext, problems: &mut Problems) -> OutputSettings {
         self.require_use(context, problems);
         let context = OutputContext {
             has_stress: self.stress != Some(StressOutput::None),
@@ -120,12 +120,12 @@ impl RawOutput {
         let tables_every = self.tables_every.unwrap_or(1);
         let level = problems.whole(self.compression.unwrap_or(0), "output.compression", 0, 9);
         let restart_every = self.restart_every.unwrap_or(1);
-        let precision = self.precision.unwrap_or(Precision::F32);
-        Output {
+        let precision = self.precision.unwrap_or(FieldPrecision::F32);
+        OutputSettings {
             stress: self.stress.unwrap_or(StressOutput::Nodal),
             precision,
             stress_error: self.check_stress_error(precision, problems),
-            displacement: self.displacement.unwrap_or(Precision::F64),
+            displacement: self.displacement.unwrap_or(FieldPrecision::F64),
             restart_every: problems.whole(restart_every, "output.restart_every", 1, MAX_EVERY) as u64,
             compression: level as u8,
             tables_every: problems.whole(tables_every, "output.tables_every", 1, MAX_EVERY) as u64,
@@ -151,7 +151,7 @@ impl RawOutput {
                 "output.restart_every does nothing without a motion, [dynamic]: nothing else can be resumed; remove it",
             );
         }
-        if self.displacement == Some(Precision::F32) && !context.is_motion {
+        if self.displacement == Some(FieldPrecision::F32) && !context.is_motion {
             problems.add(
                 "output.displacement is \"f32\"; expected \"f64\" without a motion, [dynamic], whose state holds it \
                  exactly",
@@ -159,7 +159,7 @@ impl RawOutput {
         }
     }
 
-    fn check_stress_error(&self, precision: Precision, problems: &mut Problems) -> Option<f64> {
+    fn check_stress_error(&self, precision: FieldPrecision, problems: &mut Problems) -> Option<f64> {
         const KEY: &str = "output.stress_error";
         let error = self.stress_error.as_ref()?;
         if self.stress == Some(StressOutput::None) {

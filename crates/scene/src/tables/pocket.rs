@@ -5,7 +5,7 @@ use std::ops::RangeInclusive;
 use contact::hertz::{Elastic, HertzContact};
 use input::{HERTZ_STIFFNESS, Problems, Quantity, STRESS};
 
-use super::materials::Material;
+use super::materials::MaterialProperties;
 
 /// Softest and stiffest pocket, N/m^1.5: rubber to a ball on a steel flat.
 const STIFFNESSES: RangeInclusive<f64> = 1e4..=1e12;
@@ -24,7 +24,7 @@ pub struct PocketKeys<'a> {
 pub struct PocketFit<'a> {
     pub diameter: f64,
     pub clearance: f64,
-    pub material: &'a Material,
+    pub material: &'a MaterialProperties,
 }
 
 impl PocketKeys<'_> {

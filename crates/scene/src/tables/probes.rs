@@ -89,8 +89,13 @@ pub enum Axes {
 pub enum SectionPoint {
     /// On the raceway at a groove angle, rad.
     Groove(f64),
-    /// At a distance from the axis and from the plane of the groove centres [r, z], m.
-    Anywhere([f64; 2]),
+    /// Anywhere.
+    Anywhere {
+        /// Distance from the axis, m.
+        radius: f64,
+        /// Distance from the plane of the groove centres, m.
+        z: f64,
+    },
 }
 
 /// Stress and displacement of a node.
@@ -290,7 +295,10 @@ impl RawNodeProbe {
             }
             (None, Some(r), Some(z)) => {
                 problems.require_positive(r, &format!("{key}.r"), "a distance from the axis");
-                Some(SectionPoint::Anywhere([r.si(), z.si()]))
+                Some(SectionPoint::Anywhere {
+                    radius: r.si(),
+                    z: z.si(),
+                })
             }
             _ => {
                 problems.add(format!(

@@ -15,13 +15,14 @@ use serde::Deserialize;
 
 use super::ball_diameters::RawBallDiameters;
 use super::bearing::Bearing;
-use super::contact::{BallElasticity, Contact, ContactMode};
+use super::contact::{BallElasticity, Contact};
 use super::dent::RawDent;
 use super::heights::RawHeights;
 use super::profile_place::{RawAngle, RawBody, RawPlace, WornBody};
 use super::random::SplitMix64;
 use super::ring::MeshFiles;
 use super::ring_name::RingName;
+use dynamics::ContactMode;
 
 /// As typed.
 #[derive(Debug, Default, Deserialize)]

@@ -36,14 +36,14 @@ const OF_MOTION: [&str; 4] = ["shaft", "speed", "output", "dynamic"];
 
 /// A table of the reference.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Block {
+pub struct ReferenceTable {
     /// Dotted name of the table; empty for the keys of the scene itself.
     pub table: String,
     /// Its commented TOML, without blank lines at its end.
     pub text: String,
 }
 
-impl Block {
+impl ReferenceTable {
     /// The keys that it shows, also those in comments.
     pub fn keys(&self) -> Vec<&str> {
         self.text
@@ -64,14 +64,14 @@ impl Block {
 }
 
 /// All tables in the order of the reference: those of scenes at rest, effects, motion, the others.
-pub fn all() -> Vec<Block> {
-    let is_effect = |block: &Block| block.table.starts_with("effects.");
-    let of_motion = |block: &Block| {
+pub fn all() -> Vec<ReferenceTable> {
+    let is_effect = |block: &ReferenceTable| block.table.starts_with("effects.");
+    let of_motion = |block: &ReferenceTable| {
         let first = block.table.split('.').next().unwrap_or_default();
         OF_MOTION.contains(&first)
     };
     let rest = blocks(REST).into_iter().filter(|block| !is_effect(block));
-    let mut all: Vec<Block> = rest.collect();
+    let mut all: Vec<ReferenceTable> = rest.collect();
     for entry in Effects::default().list() {
         all.extend(blocks(entry.about().example));
     }
@@ -85,7 +85,7 @@ pub fn all() -> Vec<Block> {
             order.push(first);
         }
     }
-    let place = |block: &Block| {
+    let place = |block: &ReferenceTable| {
         order
             .iter()
             .position(|first| block.table.split('.').next() == Some(first))
@@ -95,15 +95,16 @@ pub fn all() -> Vec<Block> {
 }
 
 /// The tables that have a key, or whose name begins with `topic`: `bearing`, `bearing.width`, `width`.
-pub fn about(topic: &str) -> Vec<Block> {
+pub fn about(topic: &str) -> Vec<ReferenceTable> {
     let topic = topic.trim_matches(['[', ']']);
     let all = all();
-    let is_table = |block: &&Block| block.table == topic || block.table.starts_with(&format!("{topic}."));
-    let tables: Vec<Block> = all.iter().filter(is_table).cloned().collect();
+    let is_table =
+        |block: &&ReferenceTable| block.table == topic || block.table.starts_with(&format!("{topic}."));
+    let tables: Vec<ReferenceTable> = all.iter().filter(is_table).cloned().collect();
     if !tables.is_empty() {
         return tables;
     }
-    let has_key = |block: &&Block| match topic.rsplit_once('.') {
+    let has_key = |block: &&ReferenceTable| match topic.rsplit_once('.') {
         Some((table, key)) => block.table == table && block.keys().contains(&key),
         None => block.keys().contains(&topic) || block.table.ends_with(&format!(".{topic}")),
     };
@@ -111,7 +112,7 @@ pub fn about(topic: &str) -> Vec<Block> {
 }
 
 /// Blocks as a page: a heading each, and the TOML.
-pub fn page(blocks: &[Block]) -> String {
+pub fn page(blocks: &[ReferenceTable]) -> String {
     let mut page = String::new();
     let mut last = None;
     for block in blocks {
@@ -140,19 +141,19 @@ pub fn whole_page() -> String {
 
 /// The tables of a text with the comments in them. A commented header, `# [name]`, begins a table too, which is shown
 /// without its comment signs.
-fn blocks(text: &str) -> Vec<Block> {
-    let mut blocks: Vec<Block> = Vec::new();
+fn blocks(text: &str) -> Vec<ReferenceTable> {
+    let mut blocks: Vec<ReferenceTable> = Vec::new();
     let mut hidden = false;
     for line in text.lines() {
         let bare = line.strip_prefix("# ").unwrap_or(line);
         if let Some(name) = header(bare) {
             hidden = bare != line;
-            blocks.push(Block {
+            blocks.push(ReferenceTable {
                 table: name.to_string(),
                 text: String::new(),
             });
         } else if blocks.is_empty() && !line.is_empty() {
-            blocks.push(Block {
+            blocks.push(ReferenceTable {
                 table: String::new(),
                 text: String::new(),
             });

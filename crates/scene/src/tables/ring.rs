@@ -6,11 +6,11 @@ use input::{KINDS, LENGTH, Problems, Quantity, parse_unit};
 use serde::Deserialize;
 
 use super::bearing::Bearing;
-use super::contact::ContactMode;
 use super::cut::{Cut, RawCut};
 use super::ring_inertia::{self, InertiaSource, RingInertia};
 use super::ring_name::RingName;
-use super::section::{RawSection, Section};
+use super::section::{MeshedSection, RawSection};
+use dynamics::ContactMode;
 
 /// As typed.
 #[derive(Debug, Default, Deserialize)]
@@ -49,7 +49,7 @@ pub struct Ring {
     /// The finite-element body, `None` for a rigid ring.
     pub body: Option<FlexibleRing>,
     /// The section `raceway mesh` builds, when given.
-    pub section: Option<Section>,
+    pub section: Option<MeshedSection>,
     /// Inertia of a rigid ring, where it has its own.
     pub inertia: Option<RingInertia>,
 }
@@ -158,7 +158,7 @@ impl RawRing {
     fn check_inertia(
         &self,
         ring: RingName,
-        section: Option<&Section>,
+        section: Option<&MeshedSection>,
         context: RingContext<'_>,
         problems: &mut Problems,
         assumed: &mut Vec<String>,

@@ -39,7 +39,7 @@ pub enum SectionElement {
 
 /// A ring's section and the fineness of its mesh.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Section {
+pub struct MeshedSection {
     /// Diameters of the shoulders beside the groove, m, at -z and at +z.
     pub shoulder_diameters: [f64; 2],
     /// Element kind.
@@ -65,7 +65,7 @@ const MAX_ELEMENTS: i64 = 1000;
 /// The same round the ring.
 const MAX_SECTORS: i64 = 100_000;
 
-impl Section {
+impl MeshedSection {
     /// Measures of the ring that it is the section of.
     pub fn measures(&self, bearing: &Bearing, ring: RingName) -> RingSection {
         let (side, seat_diameter, raceway_diameter, groove_radius) = match ring {
@@ -107,7 +107,7 @@ impl RawSection {
         bearing: Option<&Bearing>,
         problems: &mut Problems,
         assumed: &mut Vec<String>,
-    ) -> Section {
+    ) -> MeshedSection {
         let table = format!("{}.section", ring.key());
         let whole = |problems: &mut Problems, value, name: &str, min, max| {
             problems.whole(value, &format!("{table}.{name}"), min, max)
@@ -140,7 +140,7 @@ impl RawSection {
             grading,
             "expected 1 (uniform) to 3",
         );
-        Section {
+        MeshedSection {
             shoulder_diameters: self.shoulders(ring, bearing, assumed),
             element: self.element,
             sectors,
@@ -224,7 +224,7 @@ impl RawSection {
 }
 
 /// The shoulders of the two rings face each other across the cage: they must not meet.
-pub fn check_gap(inner: &Section, outer: &Section, problems: &mut Problems) {
+pub fn check_gap(inner: &MeshedSection, outer: &MeshedSection, problems: &mut Problems) {
     for (i, (a, b)) in inner
         .shoulder_diameters
         .iter()

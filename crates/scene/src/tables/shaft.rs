@@ -66,7 +66,7 @@ pub struct RawPrescribed<const KIND: usize> {
 
 /// One degree of freedom of the shaft.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Motion {
+pub enum ShaftMotion {
     /// It follows from equilibrium.
     Free,
     /// It is zero.
@@ -79,15 +79,15 @@ pub enum Motion {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Shaft {
     /// Displacement along x.
-    pub x: Motion,
+    pub x: ShaftMotion,
     /// Displacement along y.
-    pub y: Motion,
+    pub y: ShaftMotion,
     /// Displacement along z, + = the direction of preload.
-    pub z: Motion,
+    pub z: ShaftMotion,
     /// Rotation about x.
-    pub tilt_x: Motion,
+    pub tilt_x: ShaftMotion,
     /// Rotation about y.
-    pub tilt_y: Motion,
+    pub tilt_y: ShaftMotion,
     /// Factors over time of x, y, z, tilt x, tilt y where they are prescribed.
     pub schedules: [Schedule; 5],
     /// Axial distance from the plane of the inner groove centres to the point where forces act, m, + along z.
@@ -178,11 +178,11 @@ impl RawShaft {
 
 impl<const KIND: usize> RawMotion<KIND> {
     /// What it says of the motion.
-    pub fn motion(&self) -> Motion {
+    pub fn motion(&self) -> ShaftMotion {
         match self {
-            RawMotion::Free => Motion::Free,
-            RawMotion::Locked => Motion::Locked,
-            RawMotion::Prescribed(prescribed) => Motion::Prescribed(prescribed.value.si()),
+            RawMotion::Free => ShaftMotion::Free,
+            RawMotion::Locked => ShaftMotion::Locked,
+            RawMotion::Prescribed(prescribed) => ShaftMotion::Prescribed(prescribed.value.si()),
         }
     }
 

@@ -1,5 +1,7 @@
 //! `[solver]`: how the equations are solved.
 
+use comm::Communicator;
+use dynamics::{Backend, Sectors};
 use input::Problems;
 use serde::Deserialize;
 
@@ -7,7 +9,7 @@ use serde::Deserialize;
 #[derive(Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields, expecting = "the table [solver]")]
 pub struct RawSolver {
-    backend: Option<Backend>,
+    backend: Option<BackendChoice>,
     sectors: Option<i64>,
     tolerance: Option<f64>,
     max_iterations: Option<i64>,
@@ -16,7 +18,7 @@ pub struct RawSolver {
 /// Solver of the linear systems of the rings.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq)]
 #[serde(rename_all = "snake_case")]
-pub enum Backend {
+pub enum BackendChoice {
     /// Harmonics for a rotationally periodic ring in motion, else sparse Cholesky.
     Auto,
     /// Harmonics in motion; a ring that is not periodic is refused.
@@ -27,18 +29,18 @@ pub enum Backend {
     Sector,
 }
 
-impl Backend {
+impl BackendChoice {
     /// Whether a rank may hold a part of a ring only.
     pub fn divides_rings(self) -> bool {
-        self == Backend::Sector
+        self == BackendChoice::Sector
     }
 
     /// What each of several ranks computes by itself, in words; None: they share all of it.
     pub fn unshared(self) -> Option<&'static str> {
         match self {
-            Backend::Sector | Backend::Cyclic => None,
-            Backend::Auto => Some("rings that are not rotationally periodic"),
-            Backend::Sparse => Some("the whole run"),
+            BackendChoice::Sector | BackendChoice::Cyclic => None,
+            BackendChoice::Auto => Some("rings that are not rotationally periodic"),
+            BackendChoice::Sparse => Some("the whole run"),
         }
     }
 }
@@ -47,13 +49,28 @@ impl Backend {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Solver {
     /// Linear solver.
-    pub backend: Backend,
+    pub backend: BackendChoice,
     /// Number of sectors of each ring with the backend `sector`; None: by the size of the ring.
     pub sectors: Option<usize>,
     /// Newton stops when the residual is below this part of the loads, dimensionless.
     pub tolerance: f64,
     /// Newton iterations before a solution counts as failed.
     pub max_iterations: usize,
+}
+
+impl Solver {
+    /// The linear solver of the rings, with the ranks of this process.
+    pub fn of_rings(&self) -> Backend {
+        match self.backend {
+            BackendChoice::Auto => Backend::Auto,
+            BackendChoice::Cyclic => Backend::Cyclic,
+            BackendChoice::Sparse => Backend::Sparse,
+            BackendChoice::Sector => Backend::Sector(Sectors {
+                n_sectors: self.sectors,
+                comm: Communicator::world(),
+            }),
+        }
+    }
 }
 
 /// Two digits above the round-off of the contact equations.
@@ -71,10 +88,10 @@ impl RawSolver {
             tolerance,
             "expected 1e-14 to 1e-2, it is relative to the loads",
         );
-        let backend = self.backend.unwrap_or(Backend::Auto);
+        let backend = self.backend.unwrap_or(BackendChoice::Auto);
         if let Some(sectors) = self.sectors {
             problems.require(
-                backend == Backend::Sector,
+                backend == BackendChoice::Sector,
                 "solver.sectors",
                 sectors,
                 "expected only with backend = \"sector\"",

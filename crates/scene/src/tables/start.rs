@@ -4,7 +4,7 @@
 use input::{ANGLE, ANGULAR_SPEED, LENGTH, Problems, Quantity, SPEED};
 use serde::Deserialize;
 
-use super::shaft::{Motion, Shaft};
+use super::shaft::{Shaft, ShaftMotion};
 
 /// As typed.
 #[derive(Debug, Deserialize)]
@@ -100,7 +100,7 @@ impl RawGiven {
             ("tilt_y", shaft.tilt_y),
         ];
         for ((name, motion), (q, v)) in dofs.into_iter().zip(displacement.iter().zip(&velocity)) {
-            if motion != Motion::Free && (q.is_some() || v.is_some()) {
+            if motion != ShaftMotion::Free && (q.is_some() || v.is_some()) {
                 problems.add(format!(
                     "[dynamic.start.given] moves {name}, which shaft.{name} does not leave free; remove it there or \
                      set shaft.{name} = \"free\""

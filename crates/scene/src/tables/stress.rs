@@ -8,7 +8,7 @@
 use input::Problems;
 use serde::Deserialize;
 
-use super::contact::ContactMode;
+use dynamics::ContactMode;
 
 /// As typed.
 #[derive(Debug, Default, Deserialize)]

@@ -7,11 +7,11 @@ use pulp::{Simd, WithSimd};
 use super::matrix::CyclicMatrix;
 use super::number::{Complex, Form};
 use super::phases::LANES;
-use super::ring::{Link, Shared};
+use super::ring::{OrderedCoupling, SharedRing};
 
 /// Writes the lower triangle of a group's matrices, `A_k = sum of D^H C exp(i pi k q / N) D`, into the factor's blocks.
 pub(super) struct Fill<'a, F: Form> {
-    pub(super) shared: &'a Shared,
+    pub(super) shared: &'a SharedRing,
     pub(super) matrix: &'a CyclicMatrix,
     pub(super) group: usize,
     /// `[n_blocks][3][3][PARTS][LANES]`.
@@ -21,7 +21,7 @@ pub(super) struct Fill<'a, F: Form> {
 
 /// Overwrites one group's part of a vector with the product of its matrices and another one.
 pub(super) struct Product<'a> {
-    pub(super) shared: &'a Shared,
+    pub(super) shared: &'a SharedRing,
     pub(super) matrix: &'a CyclicMatrix,
     pub(super) group: usize,
     pub(super) x: &'a [f64],
@@ -29,7 +29,7 @@ pub(super) struct Product<'a> {
 }
 
 /// Cosines and sines of all steps of a ring for a group, `[n_steps][2][LANES]`.
-fn phases(shared: &Shared, group: usize) -> Vec<f64> {
+fn phases(shared: &SharedRing, group: usize) -> Vec<f64> {
     let steps = shared.steps.iter();
     steps
         .flat_map(|&q| shared.phases.lanes(group, q))
@@ -89,7 +89,7 @@ impl WithSimd for Product<'_> {
         let (x, y) = (S::as_simd_f64s(self.x).0, S::as_mut_simd_f64s(self.y).0);
         // Couplings of a row with one step share their phase.
         let mut links = self.shared.links.as_slice();
-        while let Some(&Link { row, step, .. }) = links.first() {
+        while let Some(&OrderedCoupling { row, step, .. }) = links.first() {
             let n = links
                 .iter()
                 .take_while(|link| link.row == row && link.step == step)
@@ -114,7 +114,7 @@ impl WithSimd for Product<'_> {
 fn add_blocks<S: Simd>(
     simd: S,
     blocks: &[[f64; 9]],
-    links: &[Link],
+    links: &[OrderedCoupling],
     x: &[S::f64s],
     v: usize,
 ) -> [Complex<S>; 3] {

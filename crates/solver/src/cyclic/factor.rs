@@ -11,7 +11,7 @@ use super::kernel::Factorise;
 use super::matrix::CyclicMatrix;
 use super::number::{Form, Hermitian, Real};
 use super::phases::LANES;
-use super::ring::{CyclicRing, Link};
+use super::ring::{CyclicRing, OrderedCoupling};
 use super::sweep::Sweeps;
 use crate::error::SolverError;
 use crate::linear_solver::LinearSolver;
@@ -31,7 +31,7 @@ const COLUMNS: usize = 8;
 pub struct CyclicCholesky {
     ring: CyclicRing,
     symmetry: Symmetry,
-    hold: Hold,
+    hold: Restraint,
     /// Groups of this rank, `[n_groups][n_blocks][3][3][parts][LANES]`.
     pub(super) values: Vec<f64>,
 }
@@ -57,7 +57,7 @@ impl Symmetry {
 
 /// What keeps a ring from moving as a whole.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Hold {
+enum Restraint {
     /// Supports or inertia, which are in the matrix.
     Matrix,
     /// Springs added to it, see [`CyclicRing::factor_unheld`].
@@ -68,7 +68,7 @@ impl CyclicRing {
     /// Factors a positive definite matrix of this ring's couplings, harmonics in parallel; the bits do not
     /// depend on the number of threads. The error names the caller's row, of sector 0, where elimination breaks down.
     pub fn factor(&self, matrix: &CyclicMatrix) -> Result<CyclicCholesky, SolverError> {
-        self.factor_into(matrix, Hold::Matrix, Vec::new())
+        self.factor_into(matrix, Restraint::Matrix, Vec::new())
     }
 
     /// Factors the stiffness of a ring that nothing holds, with the least that holds it: springs on the mean axial
@@ -76,14 +76,14 @@ impl CyclicRing {
     /// carry a load's resultants and nothing else. So for loads without resultant force and moment the solution is
     /// one of the ring free in space, exactly; others differ by a rigid motion, which is the caller's to choose.
     pub fn factor_unheld(&self, matrix: &CyclicMatrix) -> Result<CyclicCholesky, SolverError> {
-        self.factor_into(matrix, Hold::Springs, Vec::new())
+        self.factor_into(matrix, Restraint::Springs, Vec::new())
     }
 
     /// Factors in memory that may be there already.
     fn factor_into(
         &self,
         matrix: &CyclicMatrix,
-        hold: Hold,
+        hold: Restraint,
         values: Vec<f64>,
     ) -> Result<CyclicCholesky, SolverError> {
         matrix.check_pattern(&self.shared.pattern)?;
@@ -136,7 +136,7 @@ impl CyclicRing {
         &self,
         matrix: &CyclicMatrix,
         symmetry: Symmetry,
-        hold: Hold,
+        hold: Restraint,
         mut values: Vec<f64>,
     ) -> Result<CyclicCholesky, SolverError> {
         let shared = &self.shared;
@@ -162,7 +162,7 @@ impl CyclicRing {
                     values,
                     form: PhantomData,
                 });
-                if group == 0 && hold == Hold::Springs {
+                if group == 0 && hold == Restraint::Springs {
                     self.add_springs::<F>(values);
                 }
                 let mut ratios = vec![0.0; 3 * LANES * self.n_section_nodes()];
@@ -234,12 +234,12 @@ impl CyclicRing {
 }
 
 /// The links of a row.
-trait Rows {
-    fn iter_row(&self, row: usize) -> impl Iterator<Item = &Link>;
+trait RowLinks {
+    fn iter_row(&self, row: usize) -> impl Iterator<Item = &OrderedCoupling>;
 }
 
-impl Rows for Vec<Link> {
-    fn iter_row(&self, row: usize) -> impl Iterator<Item = &Link> {
+impl RowLinks for Vec<OrderedCoupling> {
+    fn iter_row(&self, row: usize) -> impl Iterator<Item = &OrderedCoupling> {
         let first = self.partition_point(|link| link.row < row);
         self[first..].iter().take_while(move |link| link.row == row)
     }

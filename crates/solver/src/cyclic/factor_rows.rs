@@ -26,14 +26,14 @@ pub(crate) enum Memory {
 
 /// Neighbouring blocks of one row, by their number in ascending order of columns.
 #[derive(Clone, Copy)]
-pub(super) struct Run<'a> {
+pub(super) struct BlockRun<'a> {
     pub(super) columns: &'a [usize],
     /// Place in memory of the one that is first there.
     pub(super) first: usize,
     memory: Memory,
 }
 
-impl Run<'_> {
+impl BlockRun<'_> {
     /// Place in the memory of the run of block k.
     #[inline(always)]
     pub(super) fn place(&self, k: usize) -> usize {
@@ -94,13 +94,13 @@ impl FactorRows {
 
     /// All blocks of row i.
     #[inline(always)]
-    pub(super) fn row(&self, i: usize) -> Run<'_> {
+    pub(super) fn row(&self, i: usize) -> BlockRun<'_> {
         self.run(self.starts[i], self.starts[i + 1])
     }
 
     /// Blocks of row i at the columns from `first` on.
     #[inline(always)]
-    pub(super) fn since_column(&self, i: usize, first: usize) -> Run<'_> {
+    pub(super) fn since_column(&self, i: usize, first: usize) -> BlockRun<'_> {
         let skipped = match first {
             0 => 0,
             first => self.columns(i).partition_point(|&j| j < first),
@@ -110,14 +110,14 @@ impl FactorRows {
 
     /// Blocks of row i at the columns before `end`.
     #[inline(always)]
-    pub(super) fn before_column(&self, i: usize, end: usize) -> Run<'_> {
+    pub(super) fn before_column(&self, i: usize, end: usize) -> BlockRun<'_> {
         let start = self.starts[i];
         self.run(start, start + self.columns(i).partition_point(|&j| j < end))
     }
 
     #[inline(always)]
-    fn run(&self, start: usize, end: usize) -> Run<'_> {
-        Run {
+    fn run(&self, start: usize, end: usize) -> BlockRun<'_> {
+        BlockRun {
             columns: &self.columns[start..end],
             first: match self.memory {
                 Memory::Forward => start,

@@ -15,22 +15,22 @@ use pulp::{Simd, WithSimd};
 use super::matrix::CyclicMatrix;
 use super::number::Complex;
 use super::phases::LANES;
-use super::ring::Shared;
+use super::ring::SharedRing;
 use super::sloan::sloan_orders;
 
 /// A matrix of mirrored sections, prepared for products.
 #[derive(Clone, Debug)]
 pub(super) struct Mirrored {
-    runs: Vec<Run>,
+    runs: Vec<PairRun>,
     pairs: Vec<Pair>,
     /// Half sectors |q| of the runs, the different values.
     steps: Vec<i32>,
-    coupling: Coupling,
+    coupling: ComponentCoupling,
 }
 
 /// The entries that a matrix has.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Coupling {
+enum ComponentCoupling {
     /// All.
     Full,
     /// The axial component is on its own.
@@ -39,7 +39,7 @@ enum Coupling {
 
 /// Pairs of one row at one step.
 #[derive(Clone, Copy, Debug)]
-struct Run {
+struct PairRun {
     /// Place of the row's node.
     row: usize,
     /// Index of the step.
@@ -61,7 +61,7 @@ struct Pair {
 
 impl Mirrored {
     /// Prepares `matrix`, of mirrored sections and the couplings of the ring.
-    pub(super) fn new(shared: &Shared, matrix: &CyclicMatrix) -> Mirrored {
+    pub(super) fn new(shared: &SharedRing, matrix: &CyclicMatrix) -> Mirrored {
         let mut links: Vec<(usize, i32, usize, [f64; 9])> = Vec::with_capacity(shared.links.len());
         for link in &shared.links {
             let step = shared.steps[link.step];
@@ -79,12 +79,12 @@ impl Mirrored {
         let mut steps: Vec<i32> = links.iter().map(|link| link.1).collect();
         steps.sort_unstable();
         steps.dedup();
-        let (mut runs, mut pairs): (Vec<Run>, Vec<Pair>) = (Vec::new(), Vec::new());
+        let (mut runs, mut pairs): (Vec<PairRun>, Vec<Pair>) = (Vec::new(), Vec::new());
         for same in links.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1)) {
             let before = pairs.len();
             let columns = same.chunk_by(|a, b| a.2 == b.2);
             pairs.extend(columns.map(|images| Pair::new(images[0].2, images.iter().map(|link| &link.3))));
-            runs.push(Run {
+            runs.push(PairRun {
                 row: same[0].0,
                 step: steps.partition_point(|&s| s < same[0].1),
                 len: pairs.len() - before,
@@ -93,9 +93,9 @@ impl Mirrored {
         let is_plane = |p: &Pair| p.even[3..] == [0.0; 2] && p.odd[2..] == [0.0; 2];
         Mirrored {
             coupling: if pairs.iter().all(is_plane) {
-                Coupling::Plane
+                ComponentCoupling::Plane
             } else {
-                Coupling::Full
+                ComponentCoupling::Full
             },
             runs,
             pairs,
@@ -105,13 +105,13 @@ impl Mirrored {
 
     /// Bytes of the entries.
     pub(super) fn bytes(&self) -> usize {
-        size_of::<Pair>() * self.pairs.capacity() + size_of::<Run>() * self.runs.capacity()
+        size_of::<Pair>() * self.pairs.capacity() + size_of::<PairRun>() * self.runs.capacity()
     }
 }
 
 /// Rank of each place in an order that keeps neighbours together, for the cache: elimination may take nodes from
 /// anywhere.
-fn local_order(shared: &Shared) -> Vec<usize> {
+fn local_order(shared: &SharedRing) -> Vec<usize> {
     let neighbours = shared.pattern.neighbours();
     let order = sloan_orders(&neighbours).swap_remove(0);
     let mut rank = vec![0; order.len()];
@@ -139,7 +139,7 @@ impl Pair {
 
 /// Overwrites one group's part of a vector with the product of its matrices and another one.
 pub(super) struct MirroredProduct<'a> {
-    pub(super) shared: &'a Shared,
+    pub(super) shared: &'a SharedRing,
     pub(super) matrix: &'a Mirrored,
     pub(super) group: usize,
     pub(super) x: &'a [f64],
@@ -165,8 +165,8 @@ impl WithSimd for MirroredProduct<'_> {
             let node = &mut y[6 * vectors * run.row..][..6 * vectors];
             for v in 0..vectors {
                 let sums = match self.matrix.coupling {
-                    Coupling::Full => sum_full(simd, own, x, v),
-                    Coupling::Plane => sum_plane(simd, own, x, v),
+                    ComponentCoupling::Full => sum_full(simd, own, x, v),
+                    ComponentCoupling::Plane => sum_plane(simd, own, x, v),
                 };
                 add(simd, [phase[v], phase[vectors + v]], sums, node, v);
             }

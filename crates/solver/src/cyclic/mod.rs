@@ -73,7 +73,7 @@ pub use loose::Loose;
 pub use matrix::CyclicMatrix;
 pub use operator::{HarmonicOperator, turned};
 pub use part_field::{PartField, PartHarmonics, PartLoads};
-pub use patch::Patch;
+pub use patch::PatchWeights;
 pub use pattern::Coupling;
 pub use phases::NODE_LEN;
 pub use response::{PairWeights, ResponseTable};

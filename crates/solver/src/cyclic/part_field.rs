@@ -28,11 +28,11 @@ pub struct PartLoads<'a> {
     /// Whether there are loads, by place.
     loaded: Vec<bool>,
     /// The node that was loaded last, and its site.
-    last: Option<(usize, Site)>,
+    last: Option<(usize, RadialSite)>,
 }
 
 /// Where a node's radial component is, and its direction (cos, sin); other components follow at a distance of N.
-type Site = (usize, [f64; 2]);
+type RadialSite = (usize, [f64; 2]);
 
 /// Slot of a place at which a field is not known.
 const UNKNOWN: usize = usize::MAX;
@@ -113,7 +113,7 @@ impl SectionPart {
 }
 
 impl PartField<'_> {
-    fn site(&self, node: usize) -> Site {
+    fn site(&self, node: usize) -> RadialSite {
         let (number, sector) = self.part.number(self.ring, node);
         let slot = self.slots[number];
         assert_ne!(slot, UNKNOWN, "the field is not known at node {node}");

@@ -23,8 +23,8 @@ pub(super) const BEYOND: usize = LONGEST - 1;
 
 /// Nodal weights of one or more pairs of directions on chosen nodes, in cylindrical components.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Patch {
-    runs: Vec<Run>,
+pub struct PatchWeights {
+    runs: Vec<DofRun>,
     n_directions: usize,
     /// Weights run by run, `[dof][direction]`.
     weights: Vec<f64>,
@@ -32,7 +32,7 @@ pub struct Patch {
 
 /// Neighbouring dofs of one sector in the table.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Run {
+pub(super) struct DofRun {
     pub(super) sector: usize,
     /// First dof in the table.
     pub(super) dof: usize,
@@ -40,10 +40,10 @@ pub(super) struct Run {
     weights: Range<usize>,
 }
 
-impl Patch {
+impl PatchWeights {
     /// Without nodes, for so many pairs of directions.
-    pub(super) fn new(pairs: usize) -> Patch {
-        Patch {
+    pub(super) fn new(pairs: usize) -> PatchWeights {
+        PatchWeights {
             runs: Vec::new(),
             n_directions: 2 * pairs,
             weights: Vec::new(),
@@ -58,7 +58,7 @@ impl Patch {
     /// Adds the weights of a pair of directions at the node with the table's dofs `dof..dof + 3`; nodes come in the
     /// order of the table.
     pub(super) fn push(&mut self, (sector, dof): (usize, usize), pair: usize, weights: [[f64; 3]; 2]) {
-        let is_same = |run: &Run| run.sector == sector && run.dof + run.weights.len() == dof + 3;
+        let is_same = |run: &DofRun| run.sector == sector && run.dof + run.weights.len() == dof + 3;
         if !self.runs.last().is_some_and(is_same) {
             self.push_node(sector, dof);
         }
@@ -76,7 +76,7 @@ impl Patch {
         let end = self.weights.len() / self.n_directions;
         match self.runs.last_mut() {
             Some(run) if run.sector == sector && run.dof + run.weights.len() == dof => run.weights.end += 3,
-            _ => self.runs.push(Run {
+            _ => self.runs.push(DofRun {
                 sector,
                 dof,
                 weights: end..end + 3,
@@ -86,13 +86,13 @@ impl Patch {
     }
 
     /// Its runs.
-    pub(super) fn runs(&self) -> &[Run] {
+    pub(super) fn runs(&self) -> &[DofRun] {
         &self.runs
     }
 
     /// Weights on the dofs of a run, `[dof][direction]`.
     #[inline(always)]
-    pub(super) fn of(&self, run: &Run) -> &[f64] {
+    pub(super) fn of(&self, run: &DofRun) -> &[f64] {
         &self.weights[self.n_directions * run.weights.start..self.n_directions * run.weights.end]
     }
 }
@@ -104,9 +104,9 @@ pub(super) struct Compliance<'a, const D: usize> {
     /// `[n_sectors][n_dofs][n_dofs]` and [`BEYOND`] more: sector, displacement, force; m/N.
     pub(super) responses: &'a [f64],
     /// The patch that is measured.
-    pub(super) a: &'a Patch,
+    pub(super) a: &'a PatchWeights,
     /// The patch that is loaded.
-    pub(super) b: &'a Patch,
+    pub(super) b: &'a PatchWeights,
 }
 
 impl<const D: usize> Compliance<'_, D> {

@@ -12,7 +12,7 @@ use rayon::prelude::*;
 use realfft::num_complex::Complex;
 
 use super::factor::CyclicCholesky;
-use super::patch::{BEYOND, Compliance, Patch};
+use super::patch::{BEYOND, Compliance, PatchWeights};
 use super::phases::LANES;
 use super::ring::CyclicRing;
 use super::sweep::Sweeps;
@@ -37,7 +37,7 @@ pub struct ResponseTable {
 pub type PairWeights<'a> = (&'a [usize], &'a [[[f64; 3]; 2]]);
 
 /// A Cartesian unit vector at a chosen node.
-pub(super) struct Unit {
+pub(super) struct UnitVector {
     pub(super) sector: usize,
     pub(super) chosen: usize,
     /// Along (radial, azimuthal, axial).
@@ -74,7 +74,7 @@ impl ResponseTable {
     ///
     /// # Panics
     /// Without a pair.
-    pub fn patch(&self, pairs: &[PairWeights<'_>]) -> Result<Patch, usize> {
+    pub fn patch(&self, pairs: &[PairWeights<'_>]) -> Result<PatchWeights, usize> {
         assert!(!pairs.is_empty(), "a patch has directions");
         let shared = &self.ring.shared;
         let width = self.ring.n_section_nodes();
@@ -92,7 +92,7 @@ impl ResponseTable {
             }
         }
         sites.sort_unstable_by_key(|&(place, pair, _)| (place, pair));
-        let mut patch = Patch::new(pairs.len());
+        let mut patch = PatchWeights::new(pairs.len());
         for (place, pair, weights) in sites {
             patch.push(place, pair, weights);
         }
@@ -104,7 +104,7 @@ impl ResponseTable {
     ///
     /// # Panics
     /// When the patches differ in their number of directions, or have neither two nor four.
-    pub fn compliance(&self, a: &Patch, b: &Patch) -> Vec<f64> {
+    pub fn compliance(&self, a: &PatchWeights, b: &PatchWeights) -> Vec<f64> {
         assert_eq!(a.n_directions(), b.n_directions(), "patches of equal directions");
         match a.n_directions() {
             2 => self.between_patches::<2>(a, b).concat(),
@@ -113,7 +113,7 @@ impl ResponseTable {
         }
     }
 
-    fn between_patches<const D: usize>(&self, a: &Patch, b: &Patch) -> [[f64; D]; D] {
+    fn between_patches<const D: usize>(&self, a: &PatchWeights, b: &PatchWeights) -> [[f64; D]; D] {
         Arch::new().dispatch(Compliance::<D> {
             n_sectors: self.ring.n_sectors(),
             n_dofs: self.n_dofs,
@@ -127,15 +127,15 @@ impl ResponseTable {
     ///
     /// # Panics
     /// As [`ResponseTable::compliance`].
-    pub fn compliances(&self, patches: &[Patch]) -> Vec<f64> {
-        match patches.first().map_or(2, Patch::n_directions) {
+    pub fn compliances(&self, patches: &[PatchWeights]) -> Vec<f64> {
+        match patches.first().map_or(2, PatchWeights::n_directions) {
             2 => self.of_all::<2>(patches),
             4 => self.of_all::<4>(patches),
             n => panic!("patches of {n} directions"),
         }
     }
 
-    fn of_all<const D: usize>(&self, patches: &[Patch]) -> Vec<f64> {
+    fn of_all<const D: usize>(&self, patches: &[PatchWeights]) -> Vec<f64> {
         let (n, m) = (patches.len(), D * patches.len());
         // Of evenly spaced patches, pairs that are equally far apart read the same responses: they come together.
         let apart = |k: usize| -> Vec<[[f64; D]; D]> {
@@ -221,13 +221,13 @@ impl ResponseTable {
     }
 
     /// A row as a direction at a chosen node.
-    pub(super) fn unit(&self, row: usize) -> Unit {
+    pub(super) fn unit(&self, row: usize) -> UnitVector {
         let (shared, width) = (&self.ring.shared, self.ring.n_section_nodes());
         let site = shared.sites[row / 3];
         let chosen = self.chosen[site % width];
         assert_ne!(chosen, usize::MAX, "node {} is not in the table", row / 3);
         let [c, s] = shared.directions[site];
-        Unit {
+        UnitVector {
             sector: site / width,
             chosen,
             weights: [[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]][row % 3],

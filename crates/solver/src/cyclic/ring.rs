@@ -19,17 +19,17 @@ use crate::permutation::invert;
 /// A ring of N equal sectors; clones share everything. Vectors of the ring come in two forms, see [`crate::cyclic`].
 #[derive(Clone)]
 pub struct CyclicRing {
-    pub(crate) shared: Arc<Shared>,
+    pub(crate) shared: Arc<SharedRing>,
     /// The ranks that factor and solve its harmonics.
     pub(super) comm: Communicator,
 }
 
-/// In [`Shared::nodes`] a node that the caller's vectors lack, in [`Shared::sites`] one that the ring lacks.
+/// In [`SharedRing::nodes`] a node that the caller's vectors lack, in [`SharedRing::sites`] one that the ring lacks.
 pub(crate) const ABSENT: usize = usize::MAX;
 
 /// What clones share. Places count section nodes in elimination order.
 #[derive(Clone)]
-pub(crate) struct Shared {
+pub(crate) struct SharedRing {
     pub(crate) pattern: Arc<CyclicPattern>,
     /// Place of every section node.
     pub(crate) place: Vec<usize>,
@@ -53,7 +53,7 @@ pub(crate) struct Shared {
     /// Half sectors between coupled nodes, the different values, ascending.
     pub(crate) steps: Vec<i32>,
     /// Couplings by (row, step), which the products run over.
-    pub(crate) links: Vec<Link>,
+    pub(crate) links: Vec<OrderedCoupling>,
     /// Block of the factor of each link, `usize::MAX` of those above the diagonal.
     pub(crate) link_blocks: Vec<usize>,
     pub(crate) forward: Arc<dyn RealToComplex<f64>>,
@@ -62,10 +62,10 @@ pub(crate) struct Shared {
 
 /// A coupling in elimination order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(crate) struct Link {
+pub(crate) struct OrderedCoupling {
     /// Place of the row's node.
     pub(crate) row: usize,
-    /// Index of the step in [`Shared::steps`].
+    /// Index of the step in [`SharedRing::steps`].
     pub(crate) step: usize,
     /// Place of the column's node.
     pub(crate) column: usize,
@@ -113,7 +113,7 @@ impl CyclicRing {
         let mut place = vec![0; width];
         order.iter().enumerate().for_each(|(k, &node)| place[node] = k);
         let (steps, links) = links(&pattern, &place, &halves);
-        let block = |link: &Link| match link.row < link.column {
+        let block = |link: &OrderedCoupling| match link.row < link.column {
             true => usize::MAX,
             false => rows.place(link.row, link.column),
         };
@@ -124,7 +124,7 @@ impl CyclicRing {
         let mut planner = RealFftPlanner::new();
         Ok(CyclicRing {
             comm: Communicator::Serial,
-            shared: Arc::new(Shared {
+            shared: Arc::new(SharedRing {
                 sites: invert(&nodes, nodes.len())?,
                 directions: nodes.iter().map(|&node| directions[node]).collect(),
                 phases: Phases::new(n_sectors),
@@ -242,10 +242,10 @@ impl CyclicRing {
         of_ring.for_each(|(node, &site)| seen[site] = node);
         CyclicRing {
             comm: self.comm,
-            shared: Arc::new(Shared {
+            shared: Arc::new(SharedRing {
                 nodes: seen,
                 sites,
-                ..Shared::clone(&self.shared)
+                ..SharedRing::clone(&self.shared)
             }),
         }
     }
@@ -306,7 +306,7 @@ impl fmt::Debug for CyclicRing {
 }
 
 /// Steps that occur, and the couplings sorted by row and step.
-fn links(pattern: &CyclicPattern, place: &[usize], halves: &[i32]) -> (Vec<i32>, Vec<Link>) {
+fn links(pattern: &CyclicPattern, place: &[usize], halves: &[i32]) -> (Vec<i32>, Vec<OrderedCoupling>) {
     let step = |row: usize, column: usize, shift: i32| 2 * shift + halves[column] - halves[row];
     let mut steps: Vec<i32> = pattern
         .couplings
@@ -316,11 +316,11 @@ fn links(pattern: &CyclicPattern, place: &[usize], halves: &[i32]) -> (Vec<i32>,
     let of_couplings = steps.clone();
     steps.sort_unstable();
     steps.dedup();
-    let mut links: Vec<Link> = pattern
+    let mut links: Vec<OrderedCoupling> = pattern
         .couplings
         .iter()
         .enumerate()
-        .map(|(block, c)| Link {
+        .map(|(block, c)| OrderedCoupling {
             row: place[c.row],
             step: steps.partition_point(|&s| s < of_couplings[block]),
             column: place[c.column],

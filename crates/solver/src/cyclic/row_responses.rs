@@ -9,7 +9,7 @@
 use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 
-use super::patch::Patch;
+use super::patch::PatchWeights;
 use super::response::ResponseTable;
 
 /// Components summed at a time.
@@ -85,13 +85,13 @@ impl RowResponses {
 
     /// Displacements of the rows per force on each patch in its directions, m/N, row-major
     /// `[n_rows][directions of all patches]`. The patches are those of [`ResponseTable::first`].
-    pub fn of_patches(&self, patches: &[Patch]) -> Vec<f64> {
-        let pairs = |patch: &'_ Patch| patch.n_directions() / 2;
-        let all: Vec<(&Patch, usize)> = patches
+    pub fn of_patches(&self, patches: &[PatchWeights]) -> Vec<f64> {
+        let pairs = |patch: &'_ PatchWeights| patch.n_directions() / 2;
+        let all: Vec<(&PatchWeights, usize)> = patches
             .iter()
             .flat_map(|patch| (0..pairs(patch)).map(move |pair| (patch, pair)))
             .collect();
-        let of_pair = |&(patch, pair): &(&Patch, usize)| {
+        let of_pair = |&(patch, pair): &(&PatchWeights, usize)| {
             Arch::new().dispatch(Measure {
                 table: self,
                 patch,
@@ -107,7 +107,7 @@ impl RowResponses {
     }
 
     #[inline(always)]
-    fn measured(&self, patch: &Patch, pair: usize) -> Vec<[f64; 2]> {
+    fn measured(&self, patch: &PatchWeights, pair: usize) -> Vec<[f64; 2]> {
         let mut moved = vec![[0.0; 2]; self.n_rows];
         let mut fields = vec![[0.0; 2]; self.n_components];
         for sector in &self.sectors {
@@ -127,7 +127,7 @@ impl RowResponses {
 
     /// Displacements of the components from `first` on in a sector, by direction of a pair of a patch.
     #[inline(always)]
-    fn block(&self, sector: usize, first: usize, (patch, pair): (&Patch, usize)) -> [[f64; BLOCK]; 2] {
+    fn block(&self, sector: usize, first: usize, (patch, pair): (&PatchWeights, usize)) -> [[f64; BLOCK]; 2] {
         let mut sums = [[0.0; BLOCK]; 2];
         for run in patch.runs() {
             let apart = (sector + self.n_sectors - run.sector) % self.n_sectors;
@@ -160,7 +160,7 @@ impl RowResponses {
 /// What a pair of directions of a patch moves, by the processor's widest vectors.
 struct Measure<'a> {
     table: &'a RowResponses,
-    patch: &'a Patch,
+    patch: &'a PatchWeights,
     pair: usize,
 }
 

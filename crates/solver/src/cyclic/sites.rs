@@ -25,7 +25,7 @@ impl CyclicRing {
     pub fn add_loads(&self, loads: &[NodalLoad], harmonic: &mut [f64]) {
         assert_eq!(harmonic.len(), self.harmonic_len(), "a vector in harmonic space");
         let shared = &self.shared;
-        let sites: Vec<Site> = loads.iter().map(|load| self.site(load.node)).collect();
+        let sites: Vec<NodeSite> = loads.iter().map(|load| self.site(load.node)).collect();
         let forces: Vec<[f64; 3]> = loads
             .iter()
             .zip(&sites)
@@ -87,11 +87,11 @@ impl CyclicRing {
         nodes.par_iter().with_min_len(8).map(displacement).collect()
     }
 
-    fn site(&self, node: usize) -> Site {
+    fn site(&self, node: usize) -> NodeSite {
         let shared = &self.shared;
         let (site, width) = (shared.sites[node], self.n_section_nodes());
         let place = site % width;
-        Site {
+        NodeSite {
             place,
             halves: 2 * (site / width) as i32 + shared.halves[place],
             direction: shared.directions[site],
@@ -100,7 +100,7 @@ impl CyclicRing {
 }
 
 /// Where a node is.
-struct Site {
+struct NodeSite {
     place: usize,
     /// Azimuth in half sectors.
     halves: i32,

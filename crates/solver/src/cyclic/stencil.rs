@@ -246,8 +246,8 @@ impl CyclicStencil {
                     product,
                 };
                 match self.rows {
-                    3 => arch.dispatch(Rows::<3, WIDE>(node)),
-                    _ => arch.dispatch(Rows::<6, NARROW>(node)),
+                    3 => arch.dispatch(StencilRows::<3, WIDE>(node)),
+                    _ => arch.dispatch(StencilRows::<6, NARROW>(node)),
                 }
             });
     }
@@ -338,9 +338,9 @@ struct Node<'a> {
 }
 
 /// R rows, W sectors at a time.
-struct Rows<'a, const R: usize, const W: usize>(Node<'a>);
+struct StencilRows<'a, const R: usize, const W: usize>(Node<'a>);
 
-impl<const R: usize, const W: usize> WithSimd for Rows<'_, R, W> {
+impl<const R: usize, const W: usize> WithSimd for StencilRows<'_, R, W> {
     type Output = ();
 
     #[inline(always)]

@@ -14,7 +14,7 @@ use std::marker::PhantomData;
 
 use pulp::{Simd, WithSimd};
 
-use super::factor_rows::{FactorRows, Run};
+use super::factor_rows::{BlockRun, FactorRows};
 use super::kernel::View;
 use super::number::{Complex, Form, Number};
 
@@ -43,16 +43,16 @@ pub(super) struct Solve<'a, 'b, F: Form, const R: usize> {
 
 /// Blocks of a row.
 #[derive(Clone, Copy)]
-struct Blocks<'a, S: Simd> {
-    run: Run<'a>,
+struct RowBlocks<'a, S: Simd> {
+    run: BlockRun<'a>,
     values: &'a [S::f64s],
     len: usize,
 }
 
-impl<'a, S: Simd> Blocks<'a, S> {
+impl<'a, S: Simd> RowBlocks<'a, S> {
     #[inline(always)]
-    fn new(run: Run<'a>, values: &'a [S::f64s], len: usize) -> Self {
-        Blocks {
+    fn new(run: BlockRun<'a>, values: &'a [S::f64s], len: usize) -> Self {
+        RowBlocks {
             values: &values[run.first * len..][..run.columns.len() * len],
             run,
             len,
@@ -84,7 +84,7 @@ impl<F: Form, const R: usize> WithSimd for Solve<'_, '_, F, R> {
         for half in 0..View::<S>::VECTORS {
             let view = View { simd, half };
             for i in forward.clone() {
-                let blocks = Blocks::<S>::new(self.rows.since_column(i, first[0]), values, len);
+                let blocks = RowBlocks::<S>::new(self.rows.since_column(i, first[0]), values, len);
                 forward_row::<S, F::Number<S>, R>(&view, blocks, i, &mut columns);
             }
             if let Sweeps::Finish(trailing) = self.sweeps {
@@ -93,13 +93,13 @@ impl<F: Form, const R: usize> WithSimd for Solve<'_, '_, F, R> {
                     for r in 0..R {
                         x[r] = node(&view, columns[r], i);
                     }
-                    let blocks = Blocks::<S>::new(self.rows.before_column(i, trailing), values, len);
+                    let blocks = RowBlocks::<S>::new(self.rows.before_column(i, trailing), values, len);
                     let n_blocks = blocks.run.columns.len();
                     spread::<S, F::Number<S>, R>(&view, blocks, n_blocks, x, &mut columns);
                 }
             }
             for i in backward.clone().rev() {
-                let blocks = Blocks::<S>::new(self.rows.since_column(i, first[1]), values, len);
+                let blocks = RowBlocks::<S>::new(self.rows.since_column(i, first[1]), values, len);
                 backward_row::<S, F::Number<S>, R>(&view, blocks, i, &mut columns);
             }
         }
@@ -122,7 +122,7 @@ fn node<S: Simd>(view: &View<S>, column: &[S::f64s], i: usize) -> [Complex<S>; 3
 #[inline(always)]
 fn forward_row<S: Simd, N: Number<S>, const R: usize>(
     view: &View<S>,
-    blocks: Blocks<'_, S>,
+    blocks: RowBlocks<'_, S>,
     i: usize,
     columns: &mut [&mut [S::f64s]; R],
 ) {
@@ -206,7 +206,7 @@ fn add_block<S: Simd, N: Number<S>, const R: usize>(
 #[inline(always)]
 fn backward_row<S: Simd, N: Number<S>, const R: usize>(
     view: &View<S>,
-    blocks: Blocks<'_, S>,
+    blocks: RowBlocks<'_, S>,
     i: usize,
     columns: &mut [&mut [S::f64s]; R],
 ) {
@@ -239,7 +239,7 @@ fn backward_row<S: Simd, N: Number<S>, const R: usize>(
 #[inline(always)]
 fn spread<S: Simd, N: Number<S>, const R: usize>(
     view: &View<S>,
-    blocks: Blocks<'_, S>,
+    blocks: RowBlocks<'_, S>,
     n_blocks: usize,
     x: [[Complex<S>; 3]; R],
     columns: &mut [&mut [S::f64s]; R],

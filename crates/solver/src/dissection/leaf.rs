@@ -4,14 +4,14 @@
 //! are eliminated later, so they count as neighbours and are never candidates. Time O(n_nodes^2 (n_nodes + n_halo) /
 //! 64).
 
-use super::part::Part;
+use super::part::Subdomain;
 
 /// Largest part for which bit sets are worth their quadratic memory; parts that no plane can cut may be larger and
 /// stay in their own order.
 const MOST_NODES: usize = 4000;
 
 /// Local nodes in elimination order, `[n_nodes]`.
-pub(super) fn minimum_degree(part: &Part) -> Vec<usize> {
+pub(super) fn minimum_degree(part: &Subdomain) -> Vec<usize> {
     let n = part.n_nodes();
     if n > MOST_NODES {
         return (0..n).collect();
@@ -40,7 +40,7 @@ pub(super) fn minimum_degree(part: &Part) -> Vec<usize> {
 }
 
 /// Bit rows of the neighbours of each node to be ordered, `[n_nodes][words]`, without the node itself.
-fn adjacency(part: &Part, words: usize) -> Vec<u64> {
+fn adjacency(part: &Subdomain, words: usize) -> Vec<u64> {
     let mut rows = vec![0_u64; words * part.n_nodes()];
     for e in 0..part.n_elements() {
         for &node in part.element_nodes(e) {

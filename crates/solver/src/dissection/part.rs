@@ -1,7 +1,7 @@
 //! A set of elements and their nodes that are still to be ordered, with local numbers.
 
 /// Elements 0.. of a part and its nodes 0.., each in a list of the other.
-pub(super) struct Part {
+pub(super) struct Subdomain {
     /// Global numbers of the nodes to be ordered, `[n_nodes]`, in order of first appearance.
     pub(super) nodes: Vec<usize>,
     /// Local nodes of each element, compressed; then nodes already placed, numbered from `n_nodes`.
@@ -14,7 +14,7 @@ pub(super) struct Part {
     n_halo: usize,
 }
 
-impl Part {
+impl Subdomain {
     /// Gathers the nodes of the elements `set`. `local` is scratch, `[n_global_nodes]`, all `usize::MAX` on entry and
     /// return.
     pub(super) fn new(
@@ -55,7 +55,7 @@ impl Part {
             .iter()
             .chain(&halo)
             .for_each(|&node| local[node] = usize::MAX);
-        let mut part = Part {
+        let mut part = Subdomain {
             n_halo: halo.len(),
             nodes,
             element_starts,

@@ -7,13 +7,13 @@
 
 use std::collections::BinaryHeap;
 
-use super::part::{CutSizes, Part};
+use super::part::{CutSizes, Subdomain};
 
 /// Passes end with the first that gains nothing, at the latest here.
 const MOST_PASSES: usize = 10;
 
 /// Moves the sides of a cut (`[n_elements]`) until no pass improves its cost, which is returned.
-pub(super) fn refine(part: &Part, side: &mut [bool]) -> f64 {
+pub(super) fn refine(part: &Subdomain, side: &mut [bool]) -> f64 {
     let mut state = State::new(part, side);
     for _ in 0..MOST_PASSES {
         if !state.pass() {
@@ -25,7 +25,7 @@ pub(super) fn refine(part: &Part, side: &mut [bool]) -> f64 {
 
 /// A bisection under improvement.
 struct State<'a> {
-    part: &'a Part,
+    part: &'a Subdomain,
     side: &'a mut [bool],
     /// Elements on either side of each node.
     counts: Vec<[usize; 2]>,
@@ -40,7 +40,7 @@ struct State<'a> {
 }
 
 impl<'a> State<'a> {
-    fn new(part: &'a Part, side: &'a mut [bool]) -> Self {
+    fn new(part: &'a Subdomain, side: &'a mut [bool]) -> Self {
         let mut counts = vec![[0; 2]; part.n_nodes()];
         for (node, count) in counts.iter_mut().enumerate() {
             part.node_elements(node)

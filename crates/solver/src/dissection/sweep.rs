@@ -1,10 +1,10 @@
 //! The best plane of one direction, from the exact separator sizes of all planes.
 
-use super::part::{CutSizes, Part};
+use super::part::{CutSizes, Subdomain};
 
 /// Price and sides of the elements at the cheapest cut between consecutive keys (`[n_elements]`, one per element).
 /// `None` when every cut leaves a side without nodes. Time O(n_elements (log n_elements + nodes per element)).
-pub(super) fn best_plane(part: &Part, keys: &[f64]) -> Option<(f64, Vec<bool>)> {
+pub(super) fn best_plane(part: &Subdomain, keys: &[f64]) -> Option<(f64, Vec<bool>)> {
     let n = part.n_elements();
     let mut sorted: Vec<usize> = (0..n).collect();
     sorted.sort_by(|&a, &b| keys[a].total_cmp(&keys[b]).then(a.cmp(&b)));

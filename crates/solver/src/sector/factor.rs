@@ -17,12 +17,12 @@ use crate::error::SolverError;
 /// Analysis of a ring in sectors: of those that this rank owns, and of the interface.
 #[derive(Clone, Debug)]
 pub struct SectorSymbolic {
-    shared: Arc<Shared>,
+    shared: Arc<SharedAnalysis>,
 }
 
 /// What an analysis shares with its factors and their solutions.
 #[derive(Debug)]
-pub(super) struct Shared {
+pub(super) struct SharedAnalysis {
     pub(super) layout: SectorLayout,
     pub(super) comm: Communicator,
     /// Analyses of the sectors owned.
@@ -33,7 +33,7 @@ pub(super) struct Shared {
 /// Factor of a ring in sectors.
 #[derive(Debug)]
 pub struct SectorCholesky {
-    pub(super) shared: Arc<Shared>,
+    pub(super) shared: Arc<SharedAnalysis>,
     pub(super) parts: Vec<Part>,
     pub(super) interface: Option<Interface>,
 }
@@ -56,7 +56,7 @@ impl SectorSymbolic {
         let parts: Result<Vec<PartSymbolic>, SolverError> = owned.into_par_iter().map(analyse).collect();
         let parts = agree(comm, parts)?;
         Ok(SectorSymbolic {
-            shared: Arc::new(Shared {
+            shared: Arc::new(SharedAnalysis {
                 interface: InterfaceSymbolic::new(&layout, comm)?,
                 parts,
                 layout,
@@ -115,7 +115,7 @@ impl SectorSymbolic {
     }
 }
 
-impl Shared {
+impl SharedAnalysis {
     pub(super) fn owned(&self) -> Range<usize> {
         self.comm.share(self.layout.sectors().len())
     }

@@ -56,7 +56,7 @@ pub struct SectorLayout {
 
 /// Where a row is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Place {
+pub(super) enum RowPlace {
     /// Inside: in which sector, or at which place of the inner rows of all sectors, one after the other.
     Inside(usize),
     /// At a place of the interface.
@@ -181,7 +181,7 @@ impl SectorLayout {
 
     /// Goes through all rows, ascending, with their places in the interface or among the inner rows of all sectors,
     /// one after the other.
-    pub(super) fn each_row(&self, mut put: impl FnMut(usize, Place)) {
+    pub(super) fn each_row(&self, mut put: impl FnMut(usize, RowPlace)) {
         let mut next: Vec<usize> = Vec::with_capacity(self.sectors.len());
         let mut first = 0;
         for sector in &self.sectors {
@@ -190,8 +190,8 @@ impl SectorLayout {
         }
         for row in 0..self.n {
             match self.place(row) {
-                Place::Inside(s) => {
-                    put(row, Place::Inside(next[s]));
+                RowPlace::Inside(s) => {
+                    put(row, RowPlace::Inside(next[s]));
                     next[s] += 1;
                 }
                 shared => put(row, shared),
@@ -200,11 +200,11 @@ impl SectorLayout {
     }
 
     /// Where a row is.
-    pub(super) fn place(&self, row: usize) -> Place {
+    pub(super) fn place(&self, row: usize) -> RowPlace {
         let (owner, n_sectors) = (self.owners[row] as usize, self.sectors.len());
         match owner.checked_sub(n_sectors) {
-            Some(place) => Place::Shared(place),
-            None => Place::Inside(owner),
+            Some(place) => RowPlace::Shared(place),
+            None => RowPlace::Inside(owner),
         }
     }
 

@@ -18,7 +18,7 @@
 //! others; all ranks hold the interface of few sectors, and divide that of many ([`REDUCED_FROM`]).
 //!
 //! **Many right-hand sides**, such as the forces of all contacts, need not leave their sectors: [`SectorColumns`]
-//! gives values at a few rows, and sums.
+//! gives values at a few rows. [`SectorHalves`] stop half way and give products f S^-1 g; one sweep ends their sum.
 //!
 //! **Cost.** Cuts through a ring are the top separators of its dissection anyway, so fill and operations are those of
 //! [`crate::SparseCholesky`] within a few per cent up to 32 sectors. The interface has about 2.3 n_sectors m^2
@@ -31,6 +31,7 @@ mod border;
 mod columns;
 mod cut;
 mod factor;
+mod halves;
 mod interface;
 mod layout;
 mod part;
@@ -38,9 +39,10 @@ mod reduced;
 mod reduction;
 mod solve;
 
-pub use border::{BorderedColumns, SectorBordered};
+pub use border::{BorderedHalves, SectorBordered};
 pub use columns::SectorColumns;
 pub use factor::{SectorCholesky, SectorSymbolic};
+pub use halves::SectorHalves;
 pub use interface::REDUCED_FROM;
 pub use layout::{Sector, SectorCut, SectorLayout, default_sectors};
 pub use part::{Points, SectorCost};

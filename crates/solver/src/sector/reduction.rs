@@ -37,17 +37,17 @@ pub(super) struct Step {
 }
 
 /// A block of the matrix: rows and columns by cross-section, the columns being eliminated no later than the rows.
-pub(super) type Block = [usize; 2];
+pub(super) type BlockPosition = [usize; 2];
 
 /// A block that a rank adds to the matrix.
 #[derive(Clone, Copy, Debug)]
 struct Addend {
     source: usize,
-    block: Block,
+    block: BlockPosition,
 }
 
 /// The blocks held, by rows and columns.
-pub(super) type Blocks = BTreeMap<Block, Mat<f64>>;
+pub(super) type Blocks = BTreeMap<BlockPosition, Mat<f64>>;
 
 /// What a rank holds of the factor.
 #[derive(Debug)]
@@ -131,7 +131,7 @@ impl Reduction {
     }
 
     /// The block between two cross-sections.
-    fn block(&self, a: usize, b: usize) -> Block {
+    fn block(&self, a: usize, b: usize) -> BlockPosition {
         if self.turn[a] >= self.turn[b] {
             [a, b]
         } else {
@@ -178,7 +178,7 @@ impl Reduction {
         complements: Vec<Vec<f64>>,
     ) -> Result<OwnInterface, SolverError> {
         let mut blocks = self.assemble(layout, comm, complements);
-        let is_diagonal = |(block, _): &(&Block, &Mat<f64>)| block[0] == block[1];
+        let is_diagonal = |(block, _): &(&BlockPosition, &Mat<f64>)| block[0] == block[1];
         let diagonals: BTreeMap<usize, Vec<f64>> = blocks
             .iter()
             .filter(is_diagonal)
@@ -187,7 +187,7 @@ impl Reduction {
         let (mut triangles, mut couplings) = (BTreeMap::new(), Blocks::new());
         for level in &self.levels {
             let mine: Vec<&Step> = level.iter().filter(|step| self.is_mine(step)).collect();
-            let columns: Vec<Column> = mine.iter().map(|step| self.take(&mut blocks, step)).collect();
+            let columns: Vec<BlockColumn> = mine.iter().map(|step| self.take(&mut blocks, step)).collect();
             let done: Result<Vec<_>, SolverError> = columns
                 .into_par_iter()
                 .zip(&mine)
@@ -248,7 +248,7 @@ impl Reduction {
     }
 
     /// Takes the column of a cross-section out of the blocks.
-    fn take(&self, blocks: &mut Blocks, step: &Step) -> Column {
+    fn take(&self, blocks: &mut Blocks, step: &Step) -> BlockColumn {
         let k = step.section;
         let mut take = |a: usize| {
             let found = blocks.remove(&[a, k]);
@@ -259,7 +259,7 @@ impl Reduction {
 
     /// Blocks that an elimination changes: the diagonal ones of its neighbours, then the one between them.
     fn addends(&self, step: &Step) -> Vec<Addend> {
-        let mut blocks: Vec<Block> = step.neighbours.iter().map(|&a| [a, a]).collect();
+        let mut blocks: Vec<BlockPosition> = step.neighbours.iter().map(|&a| [a, a]).collect();
         if let [a, b] = step.neighbours[..] {
             blocks.push(self.block(a, b));
         }
@@ -280,13 +280,13 @@ impl Reduction {
 }
 
 /// A diagonal block and those below it.
-type Column = (Mat<f64>, Vec<Mat<f64>>);
+type BlockColumn = (Mat<f64>, Vec<Mat<f64>>);
 
 /// L and all W of a column, and what they change: -W_a W_a^T of each, and -W_a W_b^T.
 fn eliminate(
-    (mut matrix, mut below): Column,
+    (mut matrix, mut below): BlockColumn,
     diagonal: &[f64],
-) -> Result<(Column, Vec<Mat<f64>>), SolverError> {
+) -> Result<(BlockColumn, Vec<Mat<f64>>), SolverError> {
     cholesky_in_place(matrix.as_mut())?;
     for (row, d) in diagonal.iter().enumerate() {
         let relative_pivot = matrix[(row, row)] * matrix[(row, row)] / d;

@@ -4,23 +4,39 @@ use rayon::prelude::*;
 
 use super::columns::SectorColumns;
 use super::factor::SectorCholesky;
-use super::layout::Place;
+use super::layout::RowPlace;
 use super::part::Part;
 use crate::linear_solver::{LinearSolver, SparseVector};
 
 /// Right-hand sides: dense ones, column-major `[n][..]`, then sparse ones.
 #[derive(Clone, Copy)]
-struct Loads<'a> {
-    dense: &'a [f64],
-    sparse: &'a [SparseVector],
-    n_dense: usize,
+pub(super) struct RightHandSides<'a> {
+    pub(super) dense: &'a [f64],
+    pub(super) sparse: &'a [SparseVector],
+    pub(super) n_dense: usize,
 }
 
 /// Columns that are put in place together.
 const GROUP: usize = 8;
 
-impl Loads<'_> {
-    fn n_rhs(&self) -> usize {
+impl<'a> RightHandSides<'a> {
+    /// # Panics
+    /// When `dense.len()` is no multiple of n.
+    pub(super) fn new(
+        of: &SectorCholesky,
+        dense: &'a [f64],
+        sparse: &'a [SparseVector],
+    ) -> RightHandSides<'a> {
+        let n = of.n().max(1);
+        assert!(dense.len().is_multiple_of(n), "right-hand sides of {n} rows");
+        RightHandSides {
+            dense,
+            sparse,
+            n_dense: dense.len() / n,
+        }
+    }
+
+    pub(super) fn n_rhs(&self) -> usize {
         self.n_dense + self.sparse.len()
     }
 }
@@ -61,13 +77,7 @@ impl SectorCholesky {
     /// # Panics
     /// When `dense.len()` is no multiple of n.
     pub fn columns(&self, dense: &[f64], sparse: &[SparseVector]) -> SectorColumns {
-        let n = self.n().max(1);
-        assert!(dense.len().is_multiple_of(n), "right-hand sides of {n} rows");
-        let loads = Loads {
-            dense,
-            sparse,
-            n_dense: dense.len() / n,
-        };
+        let loads = RightHandSides::new(self, dense, sparse);
         let n_rhs = loads.n_rhs();
         if n_rhs == 0 {
             return SectorColumns {
@@ -78,7 +88,14 @@ impl SectorCholesky {
             };
         }
         let mut local = self.forward(loads);
-        let interface = self.solve_interface(loads, &local);
+        let mut sent = Vec::new();
+        let parts = local.iter().zip(&self.shared.parts);
+        for ((x, part), sector) in parts.zip(self.shared.own_sectors()) {
+            for &place in &part.places[sector.n_interior..] {
+                sent.extend_from_slice(&x[n_rhs * place as usize..][..n_rhs]);
+            }
+        }
+        let interface = self.solve_interface(self.interface_loads(loads, sent), n_rhs);
         let sectors = self.shared.own_sectors();
         let parts = self.parts.iter().zip(&self.shared.parts).zip(sectors);
         let pairs: Vec<_> = local.iter_mut().zip(parts).collect();
@@ -103,7 +120,7 @@ impl SectorCholesky {
     }
 
     /// y and -F y of the sectors owned, by places, `[n_rows][n_rhs]` each.
-    fn forward(&self, loads: Loads<'_>) -> Vec<Vec<f64>> {
+    fn forward(&self, loads: RightHandSides<'_>) -> Vec<Vec<f64>> {
         let (n, n_rhs) = (self.n(), loads.n_rhs());
         let first = self.shared.owned().start;
         let forward = |(i, part): (usize, &Part)| {
@@ -120,7 +137,7 @@ impl SectorCholesky {
             }
             for (r, load) in loads.sparse.iter().enumerate() {
                 for &(row, value) in load {
-                    if self.shared.layout.place(row) == Place::Inside(first + i) {
+                    if self.shared.layout.place(row) == RowPlace::Inside(first + i) {
                         let place = places[sector.inside(row)] as usize;
                         x[n_rhs * place + loads.n_dense + r] += value;
                     }
@@ -132,20 +149,12 @@ impl SectorCholesky {
         self.parts.par_iter().enumerate().map(forward).collect()
     }
 
-    /// The solution on the interface, `[places][n_rhs]`, on all ranks.
-    fn solve_interface(&self, loads: Loads<'_>, local: &[Vec<f64>]) -> Vec<f64> {
-        let Some(interface) = &self.interface else {
-            return Vec::new();
-        };
+    /// What reaches the interface, `[places][n_rhs]`, on all ranks: loads, and `-F y` of the boundaries of the sectors
+    /// owned, `[n_rhs]` for each of their rows.
+    pub(super) fn interface_loads(&self, loads: RightHandSides<'_>, boundaries: Vec<f64>) -> Vec<f64> {
         let (shared, n, n_rhs) = (&self.shared, self.n(), loads.n_rhs());
-        let mut sent = Vec::new();
-        for ((x, part), sector) in local.iter().zip(&shared.parts).zip(shared.own_sectors()) {
-            for &place in &part.places[sector.n_interior..] {
-                sent.extend_from_slice(&x[n_rhs * place as usize..][..n_rhs]);
-            }
-        }
         let lengths = shared.lengths(|s| n_rhs * s.boundary.len());
-        let all = shared.comm.all_gather(sent, &lengths);
+        let all = shared.comm.all_gather(boundaries, &lengths);
         let rows = shared.layout.interface();
         let mut x = vec![0.0; n_rhs * rows.len()];
         for (x, &row) in x.chunks_exact_mut(n_rhs.max(1)).zip(rows) {
@@ -154,7 +163,7 @@ impl SectorCholesky {
         }
         for (r, load) in loads.sparse.iter().enumerate() {
             for &(row, value) in load {
-                if let Place::Shared(place) = shared.layout.place(row) {
+                if let RowPlace::Shared(place) = shared.layout.place(row) {
                     x[n_rhs * place + loads.n_dense + r] += value;
                 }
             }
@@ -166,12 +175,19 @@ impl SectorCholesky {
                 x.iter_mut().zip(values).for_each(|(x, value)| *x += value);
             }
         }
-        interface.solve(shared.comm, &mut x, n_rhs);
+        x
+    }
+
+    /// The solution on the interface, `[places][n_rhs]`, in place of what reaches it, on all ranks.
+    pub(super) fn solve_interface(&self, mut x: Vec<f64>, n_rhs: usize) -> Vec<f64> {
+        if let Some(interface) = self.interface.as_ref().filter(|_| n_rhs > 0) {
+            interface.solve(self.shared.comm, &mut x, n_rhs);
+        }
         x
     }
 
     /// Puts the solutions of all sectors and of the interface in place, column-major.
-    fn collect(&self, rhs: &mut [f64], columns: &SectorColumns) {
+    pub(super) fn collect(&self, rhs: &mut [f64], columns: &SectorColumns) {
         let (shared, n, n_rhs) = (&self.shared, self.n(), columns.n_columns);
         let lengths = shared.lengths(|s| n_rhs * s.n_interior);
         let mut sent = vec![0.0; lengths[shared.comm.rank()]];
@@ -193,8 +209,8 @@ impl SectorCholesky {
             let mut group: Vec<&mut [f64]> = group.chunks_exact_mut(n).collect();
             shared.layout.each_row(|row, place| {
                 let (values, place) = match place {
-                    Place::Inside(place) => (&all, place),
-                    Place::Shared(place) => (&columns.interface, place),
+                    RowPlace::Inside(place) => (&all, place),
+                    RowPlace::Shared(place) => (&columns.interface, place),
                 };
                 let values = &values[n_rhs * place + GROUP * g..n_rhs * (place + 1)];
                 group

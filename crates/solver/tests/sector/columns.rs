@@ -1,7 +1,7 @@
 //! Interfaces of many sectors, and solutions that stay by sector.
 
 use mesh::ElementKind;
-use solver::{Bordered, LinearSolver, SectorBordered, SectorColumns, SparseVector, solve_refined};
+use solver::{Bordered, LinearSolver, SectorBordered, SparseVector, solve_refined};
 
 use crate::common::{Numbers, relative_error};
 use crate::rings::{Held, Problem, irregular, ring};
@@ -104,8 +104,24 @@ fn columns_left_by_sector_are_the_solutions() {
         let sum: Vec<f64> = (0..n)
             .map(|i| (0..6).map(|r| factors[r] * expected[n * r + i]).sum())
             .collect();
-        let found = SectorColumns::sum(&[(&columns, &factors)]);
-        assert!(relative_error(&found, &sum) < 1e-15, "{n_sectors} sectors");
+        let [of_dense, of_loads] = solver.halves(&dense, &loads);
+        let found = solver.finish(&[(&of_dense, &factors[..1]), (&of_loads, &factors[1..])]);
+        assert!(relative_error(&found, &sum) < 1e-13, "{n_sectors} sectors");
+        let measured = |load: &SparseVector| -> Vec<f64> {
+            let of = |column: &[f64]| load.iter().map(|&(row, value)| value * column[row]).sum();
+            expected.chunks_exact(n).map(of).collect()
+        };
+        let measured: Vec<Vec<f64>> = loads.iter().map(measured).collect();
+        let (first, rest) = (of_loads.products(&of_dense), of_loads.products(&of_loads));
+        let found = first
+            .iter()
+            .zip(rest.chunks_exact(5))
+            .map(|(x, row)| [&[*x], row].concat());
+        let found: Vec<f64> = found.flatten().collect();
+        assert!(
+            relative_error(&found, &measured.concat()) < 1e-12,
+            "{n_sectors} sectors"
+        );
         let at: Vec<f64> = solver.solve_at(&loads, &rows);
         let whole = problem.sparse().solve_at(&loads, &rows);
         assert!(relative_error(&at, &whole) < 1e-12, "{n_sectors} sectors");
@@ -122,9 +138,9 @@ fn a_border_may_be_empty() {
     solver.solve(&mut found, 1);
     problem.sectors(5).unwrap().solve(&mut expected, 1);
     assert_eq!(found, expected);
-    let none = solver.columns(&[], &[]);
-    assert!(solver.measure(&none, &[&vec![(0, 1.0)]]).is_empty());
-    assert_eq!(solver.sum(&[(&none, &[])]), vec![0.0; found.len()]);
+    let [none, one] = solver.halves(&[], &[vec![(0, 1.0)]]);
+    assert!(one.products(&none).is_empty());
+    assert_eq!(solver.finish(&[(&none, &[])]), vec![0.0; found.len()]);
 }
 
 /// Wrong: a bore in sectors would not follow its shaft as that of a whole ring does.
@@ -164,22 +180,22 @@ fn a_border_in_sectors_is_that_of_the_whole_ring() {
         let mut found = load.clone();
         solver.solve(&mut found, 1);
         assert!(relative_error(&found, &expected) < 1e-11, "{n_sectors} sectors");
-        let columns = solver.columns(&load, std::slice::from_ref(&sparse));
-        let measured = solver.measure(&columns, &functionals.each_ref());
+        let [of_load, of_sparse] = solver.halves(&load, std::slice::from_ref(&sparse));
         let of = |x: &[f64], f: &SparseVector| f.iter().map(|&(i, v)| v * x[i]).sum::<f64>();
-        for (f, measured) in functionals.iter().zip(measured.chunks_exact(2)) {
-            let error = (measured[0] - of(&expected, f)).abs();
+        for f in &functionals {
+            let [_, half] = solver.halves(&[], std::slice::from_ref(f));
+            let error = (half.products(&of_load)[0] - of(&expected, f)).abs();
             assert!(
                 error <= 1e-11 * expected[n..].iter().fold(1e-12, |m: f64, x| m.max(x.abs())),
                 "{error:e}"
             );
             // A functional measures under a load what that measures under the functional.
-            let reciprocal = solver.measure(&solver.columns(&[], std::slice::from_ref(f)), &[&sparse])[0];
-            assert!((measured[1] - reciprocal).abs() <= 1e-11 * measured[1].abs().max(1e-16));
+            let [there, back] = [half.products(&of_sparse)[0], of_sparse.products(&half)[0]];
+            assert!((there - back).abs() <= 1e-11 * there.abs().max(1e-16));
         }
-        let mut twice = solver.columns(&load, &[]);
-        twice.add_to_first(&columns);
+        let [mut twice, _] = solver.halves(&load, &[]);
+        twice.add(&of_load);
         let doubled: Vec<f64> = expected.iter().map(|x| 2.0 * x).collect();
-        assert!(relative_error(&solver.sum(&[(&twice, &[1.0])]), &doubled) < 1e-11);
+        assert!(relative_error(&solver.finish(&[(&twice, &[1.0])]), &doubled) < 1e-11);
     }
 }

@@ -1,6 +1,6 @@
 //! Scenes that differ from a given one in a single effect.
 
-use dynamics::effects::{About, Context, Entry, SpeedRole};
+use dynamics::effects::{About, Context, EffectEntry, SpeedRole};
 use scene::{Analysis, ContactMode, FlexibleRing, Ring, Scene, StressOutput, Support};
 
 /// Name and `--set` arguments of a variant.
@@ -20,7 +20,7 @@ pub fn of(scene: &Scene) -> Vec<Variant> {
 
 /// An effect turned off, or on with the values of its trial where the scene allows it; None for a load that is not
 /// varied.
-fn variant(scene: &Scene, entry: &dyn Entry) -> Option<Variant> {
+fn variant(scene: &Scene, entry: &dyn EffectEntry) -> Option<Variant> {
     let about = entry.about();
     let (name, trial) = (about.name, about.trial?);
     if entry.table().is_some() {

@@ -159,10 +159,7 @@ impl LandStep {
         let short = (reach[0] * reach[0] + reach[1] * reach[1]).sqrt().recip();
         let [n_x, n_y] = reach.map(|l| l * short);
         // The cage's outside meets the outer ring where it is eccentric to, its bore the inner ring opposite of it.
-        let lever = match self.land.side {
-            Side::Outer => self.land.radius,
-            Side::Inner => -self.land.radius,
-        };
+        let lever = self.land.side.sign() * self.land.radius;
         LandFrame {
             arms: self.heights.map(|h| [n_x * lever, n_y * lever, Jet::constant(h)]),
             round: [-n_y, n_x, Jet::default()],

@@ -7,7 +7,7 @@ use super::super::free_contact::{Carrier, N_LENGTHS, link_forces, unit};
 use super::land::LandStep;
 use super::pocket::PocketStep;
 use super::{CageContact, CageForce};
-use crate::system::{Body, Character, Interaction, Lengths, Link, LinkForces, LinkRows, LinkTerm};
+use crate::system::{BodyId, Character, Interaction, Lengths, Link, LinkForces, LinkRows, LinkTerm};
 
 /// A family of contacts of the cage.
 #[derive(Clone, Debug, Default)]
@@ -21,8 +21,8 @@ impl CageLinks<PocketStep> {
     /// Pockets of balls that are lumped bodies from `first_ball` on, in a cage that is the body `cage`.
     pub fn pockets(contacts: Vec<PocketStep>, first_ball: usize, cage: usize) -> CageLinks<PocketStep> {
         let link = |ball: usize| {
-            let of_ball = (0..6).map(|c| unit(Body::Lumped(first_ball + ball), c, c));
-            let of_cage = (0..6).map(|c| unit(Body::Lumped(cage), c, 6 + c));
+            let of_ball = (0..6).map(|c| unit(BodyId::Lumped(first_ball + ball), c, c));
+            let of_cage = (0..6).map(|c| unit(BodyId::Lumped(cage), c, 6 + c));
             Link::linear(LinkRows::default(), of_ball.chain(of_cage).collect())
         };
         let links = (0..contacts.len()).map(link).collect();
@@ -33,9 +33,9 @@ impl CageLinks<PocketStep> {
 impl CageLinks<LandStep> {
     /// Ends of a cage, which is the body `cage`, on a land that `ring` carries.
     pub fn lands(contacts: Vec<LandStep>, cage: usize, ring: Carrier) -> CageLinks<LandStep> {
-        let mut terms: Vec<LinkTerm> = (0..6).map(|c| unit(Body::Lumped(cage), c, c)).collect();
+        let mut terms: Vec<LinkTerm> = (0..6).map(|c| unit(BodyId::Lumped(cage), c, c)).collect();
         if let Carrier::Lumped(body) = ring {
-            terms.extend((0..5).map(|c| unit(Body::Lumped(body), c, 6 + c)));
+            terms.extend((0..5).map(|c| unit(BodyId::Lumped(body), c, 6 + c)));
         }
         let links = vec![Link::linear(LinkRows::default(), terms); contacts.len()];
         CageLinks { contacts, links }

@@ -51,7 +51,7 @@ pub use jet::N_LENGTHS;
 pub use ring_step::{ElasticPlace, FREE_FEET, FREE_PORTS, RingStep, SlopeForce};
 pub use surface_force::SurfaceForce;
 
-use crate::system::{Body, Character, Interaction, Lengths, Link, LinkForces, LinkRows, LinkTerm};
+use crate::system::{BodyId, Character, Interaction, Lengths, Link, LinkForces, LinkRows, LinkTerm};
 
 /// What moves a ring's side of the contacts.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -86,13 +86,13 @@ impl FreeContacts {
         let link = |(index, _): (usize, &ContactStep)| {
             let (ball, side) = (index / 2, index % 2);
             let mut terms: Vec<LinkTerm> = (0..6)
-                .map(|c| unit(Body::Lumped(first_ball + ball), c, c))
+                .map(|c| unit(BodyId::Lumped(first_ball + ball), c, c))
                 .collect();
             match rings[side] {
-                Carrier::Lumped(body) => terms.extend((0..5).map(|c| unit(Body::Lumped(body), c, 6 + c))),
+                Carrier::Lumped(body) => terms.extend((0..5).map(|c| unit(BodyId::Lumped(body), c, 6 + c))),
                 Carrier::Elastic(body) => {
                     let coordinates = (FREE_PORTS * ball..FREE_PORTS * (ball + 1)).enumerate();
-                    terms.extend(coordinates.map(|(i, c)| unit(Body::Elastic(body), c, 6 + i)));
+                    terms.extend(coordinates.map(|(i, c)| unit(BodyId::Elastic(body), c, 6 + i)));
                 }
                 Carrier::AtRest => {}
             }
@@ -119,7 +119,7 @@ pub fn link_forces(links: impl Iterator<Item = [Jet; N_LENGTHS]>) -> LinkForces 
 }
 
 /// A coordinate that is a length of its own.
-pub fn unit(body: Body, coordinate: usize, row: usize) -> LinkTerm {
+pub fn unit(body: BodyId, coordinate: usize, row: usize) -> LinkTerm {
     let mut rows = LinkRows::default();
     rows[row] = 1.0;
     LinkTerm {

@@ -9,7 +9,7 @@ use timer::SharedLaps;
 use super::elastic::{ElasticPorts, Follow};
 use super::finite::{CarriedCircle, FiniteRows};
 use super::interaction::{Character, Interaction, Lengths, Link, LinkForces, LinkRows};
-use super::lumped::{Body, Interval, Lumped};
+use super::lumped::{BodyId, Interval, Lumped};
 use super::moves::Moves;
 
 /// Bodies and interactions over an interval.
@@ -61,10 +61,8 @@ impl<'a> System<'a> {
             starts: Vec::new(),
         };
         system.start = system.at_start();
-        let families = 0..system.interactions.len();
-        system.starts = families
-            .map(|family| system.lengths(family, &system.start))
-            .collect();
+        let at_start = |family: usize| system.lengths(family, &system.start);
+        system.starts = (0..system.interactions.len()).map(at_start).collect();
         system
     }
 
@@ -79,7 +77,7 @@ impl<'a> System<'a> {
     }
 
     /// Unknowns of a body.
-    pub fn unknowns(&self, body: Body) -> Range<usize> {
+    pub fn unknowns(&self, body: BodyId) -> Range<usize> {
         let i = self.number(body);
         self.first[i][0]..self.first[i + 1][0]
     }
@@ -98,11 +96,8 @@ impl<'a> System<'a> {
             .flat_map(|body| body.guess(self.interval))
             .collect();
         for body in &self.elastic {
-            let guess = if body.guess.is_empty() {
-                &body.start
-            } else {
-                &body.guess
-            };
+            let is_known = !body.guess.is_empty();
+            let guess = if is_known { &body.guess } else { &body.start };
             x.extend_from_slice(&guess[..body.n_moving]);
         }
         x
@@ -111,11 +106,11 @@ impl<'a> System<'a> {
     /// What an unknown is, for messages.
     pub fn name(&self, unknown: usize) -> String {
         for (i, body) in self.lumped.iter().enumerate() {
-            if self.unknowns(Body::Lumped(i)).contains(&unknown) {
+            if self.unknowns(BodyId::Lumped(i)).contains(&unknown) {
                 return body.name(unknown - self.first[i][0]);
             }
         }
-        let mut elastic = (0..self.elastic.len()).map(|i| (i, self.unknowns(Body::Elastic(i))));
+        let mut elastic = (0..self.elastic.len()).map(|i| (i, self.unknowns(BodyId::Elastic(i))));
         let found = elastic.find(|(_, unknowns)| unknowns.contains(&unknown));
         found.map_or_else(String::new, |(i, unknowns)| {
             format!("{}, port {}", self.elastic[i].name, unknown - unknowns.start)
@@ -125,21 +120,21 @@ impl<'a> System<'a> {
     /// What gives an unknown of a lumped body a place that nothing resists, for messages.
     pub fn remedy(&self, unknown: usize) -> &'static str {
         let mut lumped = self.lumped.iter().enumerate();
-        let owner = lumped.find(|(i, _)| self.unknowns(Body::Lumped(*i)).contains(&unknown));
+        let owner = lumped.find(|(i, _)| self.unknowns(BodyId::Lumped(*i)).contains(&unknown));
         owner.map_or("check the compliance of the rings", |(_, body)| body.remedy())
     }
 
     /// Coordinates of a lumped body at the end for the unknowns `x`.
     pub fn coordinates<const N: usize>(&self, body: usize, x: &[f64]) -> [f64; N] {
         let mut end = [0.0; N];
-        self.lumped[body].place(&x[self.unknowns(Body::Lumped(body))], &mut end);
+        self.lumped[body].place(&x[self.unknowns(BodyId::Lumped(body))], &mut end);
         end
     }
 
     /// Motion at all ports of an elastic body for the unknowns `x`.
     pub fn ports(&self, body: usize, x: &[f64]) -> Vec<f64> {
         let ports = self.elastic[body];
-        let mut g = x[self.unknowns(Body::Elastic(body))].to_vec();
+        let mut g = x[self.unknowns(BodyId::Elastic(body))].to_vec();
         match &ports.follow {
             Some(follow) => {
                 let q = self.coordinates(follow.body, x);
@@ -173,7 +168,7 @@ impl<'a> System<'a> {
         let moves = self.moves(x);
         let mut residual = vec![0.0; self.n()];
         for (i, body) in self.lumped.iter().enumerate() {
-            let own = self.unknowns(Body::Lumped(i));
+            let own = self.unknowns(BodyId::Lumped(i));
             body.balance(self.interval, &x[own.clone()], &mut residual[own]);
         }
         for i in 0..self.elastic.len() {
@@ -208,12 +203,12 @@ impl<'a> System<'a> {
         let (end, mut sum) = (self.end(x), [0.0; N]);
         let family = self.interactions[family];
         for (link, force) in family.links().iter().zip(forces.chunks_exact(family.n_rows())) {
-            let own = link.terms.iter().filter(|term| term.body == Body::Lumped(body));
+            let own = link.terms.iter().filter(|term| term.body == BodyId::Lumped(body));
             own.for_each(|term| sum[term.coordinate] += product(&term.rows, force));
             let Some(finite) = link.finite else { continue };
             let rows = self.mean_rows(&finite, &end);
             for ((of, coordinate), row) in finite.coordinates().into_iter().zip(rows) {
-                if of == Body::Lumped(body) {
+                if of == BodyId::Lumped(body) {
                     sum[coordinate] += product(&row, force);
                 }
             }
@@ -226,7 +221,7 @@ impl<'a> System<'a> {
         let n = self.n();
         let mut tangent = vec![0.0; n * n];
         for (i, body) in self.lumped.iter().enumerate() {
-            let own = self.unknowns(Body::Lumped(i));
+            let own = self.unknowns(BodyId::Lumped(i));
             let block = body.tangent(self.interval);
             for (a, row) in own.clone().zip(block.chunks_exact(own.len().max(1))) {
                 for (b, value) in own.clone().zip(row) {
@@ -280,10 +275,10 @@ impl<'a> System<'a> {
         self.interactions.iter().enumerate().map(of).sum()
     }
 
-    fn number(&self, body: Body) -> usize {
+    fn number(&self, body: BodyId) -> usize {
         match body {
-            Body::Lumped(i) => i,
-            Body::Elastic(i) => self.lumped.len() + i,
+            BodyId::Lumped(i) => i,
+            BodyId::Elastic(i) => self.lumped.len() + i,
         }
     }
 
@@ -300,10 +295,10 @@ impl<'a> System<'a> {
         let mut end = vec![0.0; first];
         for (i, body) in self.lumped.iter().enumerate() {
             let own = self.first[i][1]..self.first[i + 1][1];
-            body.place(&x[self.unknowns(Body::Lumped(i))], &mut end[own]);
+            body.place(&x[self.unknowns(BodyId::Lumped(i))], &mut end[own]);
         }
         for i in 0..self.elastic.len() {
-            end.extend_from_slice(&x[self.unknowns(Body::Elastic(i))]);
+            end.extend_from_slice(&x[self.unknowns(BodyId::Elastic(i))]);
         }
         end
     }
@@ -318,15 +313,14 @@ impl<'a> System<'a> {
         for (link, lengths) in links.iter().zip(lengths.chunks_exact_mut(n)) {
             lengths.copy_from_slice(&link.reach[..n]);
             for term in &link.terms {
-                let q = coordinates[self.first[self.number(term.body)][1] + term.coordinate];
+                let q = coordinates[self.coordinate(term.body, term.coordinate)];
                 for (l, row) in lengths.iter_mut().zip(term.rows) {
                     *l += row * q;
                 }
             }
             if let Some(finite) = &link.finite {
-                let more = finite
-                    .circle
-                    .lengths(self.finite_coordinates(finite, coordinates));
+                let at = self.finite_coordinates(finite, coordinates);
+                let more = finite.circle.lengths(at);
                 lengths.iter_mut().zip(more).for_each(|(l, more)| *l += more);
             }
         }
@@ -334,7 +328,7 @@ impl<'a> System<'a> {
     }
 
     /// Place of a coordinate among all of them.
-    fn coordinate(&self, body: Body, coordinate: usize) -> usize {
+    fn coordinate(&self, body: BodyId, coordinate: usize) -> usize {
         self.first[self.number(body)][1] + coordinate
     }
 
@@ -344,7 +338,7 @@ impl<'a> System<'a> {
         for (i, body) in self.lumped.iter().enumerate() {
             let [unknown, coordinate] = self.first[i];
             moves.begin(coordinate);
-            for (c, u, slope) in body.slopes(&x[self.unknowns(Body::Lumped(i))]) {
+            for (c, u, slope) in body.slopes(&x[self.unknowns(BodyId::Lumped(i))]) {
                 moves.begin(coordinate + c);
                 moves.list.push((unknown + u, slope));
             }
@@ -390,7 +384,7 @@ impl<'a> System<'a> {
 
     /// Forces that an elastic body asks for: at its moving ports, and from the body that others follow.
     fn add_ports(&self, i: usize, x: &[f64], moves: &Moves, residual: &mut [f64]) {
-        let (body, own) = (self.elastic[i], self.unknowns(Body::Elastic(i)));
+        let (body, own) = (self.elastic[i], self.unknowns(BodyId::Elastic(i)));
         let forces = self.port_forces(i, x);
         residual[own].copy_from_slice(&forces[..body.n_moving]);
         if let Some(follow) = &body.follow {
@@ -405,8 +399,8 @@ impl<'a> System<'a> {
     }
 
     fn add_port_tangent(&self, i: usize, moves: &Moves, tangent: &mut [f64]) {
-        let (n, body) = (self.n(), self.elastic[i]);
-        let (own, size, m) = (self.unknowns(Body::Elastic(i)), body.offset.len(), body.n_moving);
+        let (n, body, own) = (self.n(), self.elastic[i], self.unknowns(BodyId::Elastic(i)));
+        let (size, m) = (body.offset.len(), body.n_moving);
         // Unknowns that move the ports, and by how much.
         let mut columns: Vec<(usize, Vec<f64>)> = Vec::new();
         for (k, unknown) in own.clone().enumerate() {
@@ -414,9 +408,8 @@ impl<'a> System<'a> {
             slope[k] = 1.0;
             columns.push((unknown, slope));
         }
-        let followed = body
-            .follow
-            .map(|follow| (follow, self.of_followed(&follow, moves)));
+        let of_followed = |follow: Follow| (follow, self.of_followed(&follow, moves));
+        let followed = body.follow.map(of_followed);
         for (follow, unknowns) in followed.iter() {
             for (unknown, q) in unknowns {
                 let mut slope = vec![0.0; m];
@@ -442,7 +435,7 @@ impl<'a> System<'a> {
     /// Unknowns of a followed body and the growth of its five coordinates with each.
     fn of_followed(&self, follow: &Follow, moves: &Moves) -> Vec<(usize, [f64; 5])> {
         let mut found: Vec<(usize, [f64; 5])> = self
-            .unknowns(Body::Lumped(follow.body))
+            .unknowns(BodyId::Lumped(follow.body))
             .map(|unknown| (unknown, [0.0; 5]))
             .collect();
         let first = self.first[follow.body][1];

@@ -13,14 +13,15 @@ use toml_edit::{DocumentMut, Item, Table, Value};
 
 use super::super::messages::Messages;
 use super::super::ring::MeshFiles;
-use super::super::{Scene, SceneError, Source, edit, include};
+use super::super::speed::RawSpeed;
+use super::super::{Scene, SceneError, TextSource, edit, include};
 use super::bodies;
 use super::mounted::{BearingOnShaft, RawMounted, check_places};
 use super::pairing::Pairing;
 use super::shaft::{CommonShaft, ShaftKind};
 use super::turned::{turn_region, turn_speed, turn_speeds, turn_weight};
 use super::{OF_TYPE, ON_SHAFT, RawSeveral, SeveralScene, is_of_type, set};
-use crate::tables::shaft::Motion;
+use crate::tables::shaft::ShaftMotion;
 
 /// Tables of the list that no bearing has, or that are given to it apart, or that a list is refused with.
 const OF_LIST: [&str; 15] = [
@@ -40,6 +41,9 @@ const OF_LIST: [&str; 15] = [
     "heat",
     "lubricant",
 ];
+/// Analyses over time, which every bearing has as the list has them.
+const OVER_TIME: [&str; 2] = ["quasi_static", "dynamic"];
+
 /// What a list is made into scenes with.
 pub struct Composer<'a> {
     pub path: &'a Path,
@@ -64,7 +68,7 @@ impl Composer<'_> {
         let pairing = pairing.unwrap_or_default();
         let at_rest = raw.analysis(document, &mut problems);
         let (scenes, told) = self.scenes(&raw, document, &pairing)?;
-        let analysis = match raw.dynamic.is_some() || raw.modes.is_some() {
+        let analysis = match raw.has_time() || raw.modes.is_some() {
             true => scenes.iter().flatten().map(|s| s.analysis.clone()).next(),
             false => at_rest,
         };
@@ -75,6 +79,7 @@ impl Composer<'_> {
         if let Some(shaft) = &shaft {
             check_ends(&raw.bearing, &scenes, shaft, &mut problems);
             check_axis(&raw.bearing, &pairing, shaft, &mut problems);
+            check_unbalance(&raw, shaft, &mut problems);
         }
         let is_sound = problems.is_empty() && told.is_empty();
         let scenes: Option<Vec<Scene>> = scenes.into_iter().collect();
@@ -94,10 +99,7 @@ impl Composer<'_> {
         if !problems.is_empty() {
             return Err(self.messages.invalid(problems.into_texts()));
         }
-        let speed = bearings[0].scene.speed.clone().map(|mut speed| {
-            turn_speeds(&mut speed, bearings[0].orientation);
-            speed
-        });
+        let speed = speeds_of_shaft(&bearings[0]);
         Ok(SeveralScene {
             path: self.path.to_path_buf(),
             text,
@@ -199,9 +201,11 @@ impl Composer<'_> {
                 set(document, &format!("shaft.{key}"), &format!("\"0 {unit}\""));
             }
             set(document, "shaft.load_point", "\"0 m\"");
-            if let Some(dynamic) = list.get("dynamic") {
-                document.insert("dynamic", dynamic.clone());
-                return;
+            for name in OVER_TIME {
+                if let Some(analysis) = list.get(name) {
+                    document.insert(name, analysis.clone());
+                    return;
+                }
             }
             edit::remove_series(document);
             match list.get("modes") {
@@ -243,7 +247,7 @@ impl Composer<'_> {
             .whole
             .with_type((&bearing.name, &bearing.r#type), &OF_TYPE, is_shared)
             .map_err(|error| self.at_bearing(error))?;
-        let source = Source {
+        let source = TextSource {
             path: self.path,
             overrides: self.overrides,
             mesh_files: self.mesh_files,
@@ -321,15 +325,15 @@ fn check_list(raw: &RawSeveral, problems: &mut Problems) {
     }
 }
 
-/// Refuses tables of `[output]` that a list has in motion only.
+/// Refuses tables of `[output]` that a list has over time only.
 fn check_output(raw: &RawSeveral, list: &DocumentMut, problems: &mut Problems) {
     let output = list.get("output").and_then(Item::as_table_like);
-    let output = output.filter(|_| raw.dynamic.is_none());
+    let output = output.filter(|_| !raw.has_time());
     let given = |name: &&str| output.is_some_and(|output| output.contains_key(name));
     for name in edit::OF_SERIES.into_iter().filter(given) {
         problems.add(format!(
-            "[output.{name}] is for a list of bearings in motion, [dynamic], only: at rest every bearing has its own \
-             [static] or [modes] files; remove it"
+            "[output.{name}] is for a list of bearings over time, [quasi_static] or [dynamic], only: at rest every \
+             bearing has its own [static] or [modes] files; remove it"
         ));
     }
 }
@@ -340,15 +344,16 @@ fn check_loads(raw: &RawSeveral, problems: &mut Problems) {
         axial_force: raw.effects.axial_force.clone(),
         radial_force: raw.effects.radial_force.clone(),
         moment: raw.effects.moment.clone(),
+        unbalance: raw.effects.unbalance.clone(),
         ..Effects::default()
     };
     let context = Context {
         is_without_inertia: raw.dynamic.is_none(),
-        clock: match raw.dynamic {
-            Some(_) => Clock::Running,
-            None => Clock::AtRest,
+        clock: match raw.has_time() {
+            true => Clock::Running,
+            false => Clock::AtRest,
         },
-        has_speed: [false; 2],
+        has_speed: raw.speed.as_ref().map_or([false; 2], RawSpeed::has),
         is_flexible: [false; 2],
         seat_diameters: [None; 2],
         has_expansion: [true; 2],
@@ -383,7 +388,8 @@ fn copy_shared(list: &DocumentMut, document: &mut DocumentMut, left_out: &[&str]
 
 /// Bearings lie on the shaft.
 fn check_ends(raw: &[RawMounted], scenes: &[Option<Scene>], shaft: &CommonShaft, problems: &mut Problems) {
-    let ([first, last], text) = shaft.ends();
+    let (ends, text) = shaft.ends();
+    let (first, last) = ends.into_inner();
     for (bearing, scene) in raw.iter().zip(scenes) {
         let Some(scene) = scene else { continue };
         let slack = scene.bearing.inner_groove_radius - 0.5 * scene.bearing.ball_diameter;
@@ -404,10 +410,32 @@ fn check_ends(raw: &[RawMounted], scenes: &[Option<Scene>], shaft: &CommonShaft,
     }
 }
 
+/// Speeds as seen along the shaft, by those of one bearing.
+fn speeds_of_shaft(bearing: &BearingOnShaft) -> Option<dynamics::kinematics::RingSpeeds> {
+    let mut speeds = bearing.scene.speed.clone()?;
+    turn_speeds(&mut speeds, bearing.orientation);
+    Some(speeds)
+}
+
+/// The mass off the axis is on the shaft.
+fn check_unbalance(raw: &RawSeveral, shaft: &CommonShaft, problems: &mut Problems) {
+    let Some(unbalance) = &raw.effects.unbalance else {
+        return;
+    };
+    let (ends, text) = shaft.ends();
+    let at = unbalance.position();
+    if !ends.contains(&at) {
+        problems.add(format!(
+            "effects.unbalance.position is {:.3} mm, which is off the shaft; expected {text}",
+            1e3 * at
+        ));
+    }
+}
+
 /// Something holds the shaft along z.
 fn check_axis(raw: &[RawMounted], pairing: &Pairing, shaft: &CommonShaft, problems: &mut Problems) {
     let is_free = match &shaft.kind {
-        ShaftKind::Rigid(rigid) => rigid.motions[2] == Motion::Free,
+        ShaftKind::Rigid(rigid) => rigid.motions[2] == ShaftMotion::Free,
         ShaftKind::Beam(_) => true,
     };
     let fixed = raw.len() - usize::from(pairing.spring.is_some());

@@ -41,10 +41,12 @@ pub use self::shaft::{CommonShaft, RigidShaft, ShaftKind};
 use super::dynamic::RawDynamic;
 use super::edit;
 use super::modes::RawModes;
+use super::quasi_static::RawQuasiStatic;
+use super::speed::RawSpeed;
 use super::sweep::{Analysis, RawStatic, RawSweep};
 
 /// Effects that load the shaft.
-pub const ON_SHAFT: [&str; 3] = ["axial_force", "moment", "radial_force"];
+pub const ON_SHAFT: [&str; 4] = ["axial_force", "moment", "radial_force", "unbalance"];
 /// Tables that a type file may have.
 const OF_TYPE: [&str; 5] = ["bearing", "materials", "contact", "inner", "outer"];
 /// Effects that act in every bearing.
@@ -83,8 +85,7 @@ struct RawSeveral {
     _inner: Option<IgnoredAny>,
     #[serde(rename = "outer")]
     _outer: Option<IgnoredAny>,
-    #[serde(rename = "speed")]
-    _speed: Option<IgnoredAny>,
+    speed: Option<RawSpeed>,
     #[serde(default)]
     effects: Effects,
     #[serde(rename = "solver")]
@@ -102,7 +103,7 @@ struct RawSeveral {
     life: Option<IgnoredAny>,
     heat: Option<IgnoredAny>,
     lubricant: Option<IgnoredAny>,
-    quasi_static: Option<IgnoredAny>,
+    quasi_static: Option<RawQuasiStatic>,
     dynamic: Option<RawDynamic>,
     modes: Option<RawModes>,
 }
@@ -128,7 +129,7 @@ pub struct SeveralScene {
     pub effects: Effects,
     /// Speeds of the rings in the frame of the shaft; none turns when `None`.
     pub speed: Option<RingSpeeds>,
-    /// [`Analysis::Static`], [`Analysis::Sweep`], [`Analysis::Dynamic`] or [`Analysis::Modes`].
+    /// What is computed.
     pub analysis: Analysis,
 }
 
@@ -175,10 +176,10 @@ impl RawSeveral {
         if let Some(modes) = &self.modes {
             modes.refuse_in_list(problems);
         }
-        if self.quasi_static.is_some() {
+        if self.effects.unbalance.is_some() && !self.has_time() {
             problems.add(
-                "[quasi_static] is not for a list of bearings yet; use [static], [sweep], [dynamic] or [modes], or \
-                 give one table [bearing]",
+                "effects.unbalance of a list of bearings is for [quasi_static] and [dynamic]: it turns with the shaft; \
+                 at rest write [[shaft.load]] with its force m e Omega^2",
             );
         }
         let others = [
@@ -205,11 +206,17 @@ impl RawSeveral {
         }
     }
 
-    /// The analysis of a list at rest; a motion and modes are read with the bearings.
+    /// Whether loads have a course over time.
+    fn has_time(&self) -> bool {
+        self.dynamic.is_some() || self.quasi_static.is_some()
+    }
+
+    /// The analysis of a list at rest; those over time and modes are read with the bearings.
     fn analysis(&self, document: &DocumentMut, problems: &mut Problems) -> Option<Analysis> {
         let given = [
             ("[static]", self.r#static.is_some()),
             ("[sweep]", self.sweep.is_some()),
+            ("[quasi_static]", self.quasi_static.is_some()),
             ("[dynamic]", self.dynamic.is_some()),
             ("[modes]", self.modes.is_some()),
         ];
@@ -218,16 +225,15 @@ impl RawSeveral {
             .filter(|(_, is)| *is)
             .map(|(name, _)| *name)
             .collect();
-        let is_refused = self.quasi_static.is_some();
         match given[..] {
             [_] => match &self.sweep {
                 Some(sweep) => sweep.check(document, problems).map(Analysis::Sweep),
                 None => Some(Analysis::Static),
             },
-            [] if is_refused => None,
             [] => {
                 problems.add(
-                    "the scene has no analysis; add one of the tables [static], [sweep], [dynamic] and [modes]",
+                    "the scene has no analysis; add one of the tables [static], [sweep], [quasi_static], [dynamic] and \
+                     [modes]",
                 );
                 None
             }

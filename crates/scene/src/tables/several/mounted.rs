@@ -35,8 +35,10 @@ pub struct BearingOnShaft {
     pub scene: Scene,
 }
 
-/// Names that folders of a run have themselves.
-const TAKEN: [&str; 2] = ["figures", "superseded"];
+/// Name of the folder of figures that a run has itself.
+const FIGURES: &str = "figures";
+/// What folders of steps that a run took back begin with.
+const SUPERSEDED: &str = "superseded";
 
 impl RawMounted {
     /// Its direction, checked.
@@ -53,10 +55,21 @@ impl RawMounted {
     pub fn check(&self, number: usize, problems: &mut Problems) {
         let letters = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '-';
         let is_name = !self.name.is_empty() && self.name.chars().all(letters);
-        problems.require(
-            is_name && !TAKEN.contains(&self.name.as_str()),
-            &format!("bearing.name of bearing {number}"),
+        let (key, name) = (
+            format!("bearing.name of bearing {number}"),
             format!("{:?}", self.name),
+        );
+        problems.require(
+            self.name != FIGURES && !self.name.starts_with(SUPERSEDED),
+            &key,
+            &name,
+            "this name is reserved: the folder of a run has \"figures\" and \"superseded_1\" itself; expected a name \
+             that is not \"figures\" and does not begin with \"superseded\"",
+        );
+        problems.require(
+            is_name,
+            &key,
+            &name,
             "expected letters, digits, _ and -, such as \"front\": its results have a folder of that name",
         );
         problems.require(

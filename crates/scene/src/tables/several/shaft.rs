@@ -6,8 +6,9 @@ use fem::Material;
 use input::{ANGLE, Clock, DENSITY, FORCE, INERTIA, LENGTH, MASS, MOMENT, Problems, Quantity, STRESS};
 use serde::Deserialize;
 
-use super::super::shaft::{Motion, RawMotion};
+use super::super::shaft::{RawMotion, ShaftMotion};
 use super::load::ShaftLoad;
+use std::ops::RangeInclusive;
 
 /// As typed.
 #[derive(Debug, Deserialize)]
@@ -109,7 +110,7 @@ pub enum ShaftKind {
 #[derive(Clone, Debug, PartialEq)]
 pub struct RigidShaft {
     /// Motions x, y, z, tilt x, tilt y of the axis point at position 0.
-    pub motions: [Motion; 5],
+    pub motions: [ShaftMotion; 5],
     /// Mass besides that along it, kg; its weight acts at the load point.
     pub mass: f64,
     /// Its moment of inertia about x and y through position 0, kg m^2.
@@ -326,7 +327,9 @@ impl RawCommonShaft {
                 &mass.mass,
                 "the mass of a table [[shaft.mass]] must be positive",
             );
-            let [transverse, polar] = mass.inertia();
+            let PointMass {
+                transverse, polar, ..
+            } = mass.mass();
             if polar > 2.0 * transverse || transverse < 0.0 || polar < 0.0 {
                 problems.add(format!(
                     "shaft.mass at {} has polar_inertia {polar} kg m2 and transverse_inertia {transverse} kg m2; no \
@@ -360,8 +363,8 @@ impl RawCommonShaft {
         );
         for (name, position) in places {
             let (ends, text) = shaft.ends();
-            let near = SAME_PLACE * (ends[1] - ends[0]);
-            if !(ends[0] - near..=ends[1] + near).contains(&position.si()) {
+            let near = SAME_PLACE * (ends.end() - ends.start());
+            if !(ends.start() - near..=ends.end() + near).contains(&position.si()) {
                 problems.add(format!(
                     "{name} is at {position}, which is off the shaft; expected {text}"
                 ));
@@ -380,24 +383,28 @@ impl RawCommonShaft {
 }
 
 impl CommonShaft {
-    /// Ends of the shaft, m, and what a message says of them.
-    pub fn ends(&self) -> ([f64; 2], String) {
+    /// From end to end of the shaft, m, and what a message says of it.
+    pub fn ends(&self) -> (RangeInclusive<f64>, String) {
         match &self.kind {
             ShaftKind::Rigid(_) => (
-                [-MAX_POSITION, MAX_POSITION],
+                -MAX_POSITION..=MAX_POSITION,
                 format!("at most {MAX_POSITION} m from position 0, check its unit"),
             ),
             ShaftKind::Beam(beam) => {
-                let [first, last] = beam.ends().map(|z| 1e3 * z);
-                let text = format!("{first:.3} to {last:.3} mm, where its sections are");
-                (beam.ends(), text)
+                let [first, last] = beam.ends();
+                let text = format!(
+                    "{:.3} to {:.3} mm, where its sections are",
+                    1e3 * first,
+                    1e3 * last
+                );
+                (first..=last, text)
             }
         }
     }
 }
 
-fn motion<const KIND: usize>(raw: &Option<RawMotion<KIND>>) -> Motion {
-    raw.as_ref().map_or(Motion::Free, RawMotion::motion)
+fn motion<const KIND: usize>(raw: &Option<RawMotion<KIND>>) -> ShaftMotion {
+    raw.as_ref().map_or(ShaftMotion::Free, RawMotion::motion)
 }
 
 fn check_motion<const KIND: usize>(
@@ -476,17 +483,13 @@ impl RawLoad {
 }
 
 impl RawPointMass {
-    fn inertia(&self) -> [f64; 2] {
-        [&self.transverse_inertia, &self.polar_inertia].map(|i| i.as_ref().map_or(0.0, Quantity::si))
-    }
-
     fn mass(&self) -> PointMass {
-        let [transverse, polar] = self.inertia();
+        let inertia = |typed: &Option<Quantity<INERTIA>>| typed.as_ref().map_or(0.0, Quantity::si);
         PointMass {
             position: self.position.si(),
             mass: self.mass.si(),
-            transverse,
-            polar,
+            transverse: inertia(&self.transverse_inertia),
+            polar: inertia(&self.polar_inertia),
         }
     }
 }

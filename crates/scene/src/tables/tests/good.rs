@@ -19,7 +19,7 @@ fn the_example_of_the_documentation_reads_as_it_says() {
         (b.inner_groove_radius, b.outer_groove_radius, b.width),
         (4.65e-3, 4.75e-3, 16e-3)
     );
-    let steel = Material {
+    let steel = MaterialProperties {
         young_modulus: 207e9,
         poisson_ratio: 0.3,
         density: 7800.0,
@@ -34,8 +34,8 @@ fn the_example_of_the_documentation_reads_as_it_says() {
         }
     );
     assert_eq!(scene.contact.mode, ContactMode::Patch);
-    assert_eq!(scene.shaft.z, Motion::Free);
-    assert_eq!(scene.shaft.tilt_x, Motion::Locked);
+    assert_eq!(scene.shaft.z, ShaftMotion::Free);
+    assert_eq!(scene.shaft.tilt_x, ShaftMotion::Locked);
     let effects = &scene.effects;
     let radial = effects.radial_force.as_ref().unwrap();
     assert_eq!(
@@ -139,9 +139,9 @@ fn a_prescribed_motion_keeps_its_value() {
         &["shaft.z=12 um", "shaft.tilt_y=-0.1 mrad", "shaft.x=locked"],
     )
     .unwrap();
-    assert_eq!(scene.shaft.z, Motion::Prescribed(12e-6));
-    assert_eq!(scene.shaft.tilt_y, Motion::Prescribed(-1e-4));
-    assert_eq!(scene.shaft.x, Motion::Locked);
+    assert_eq!(scene.shaft.z, ShaftMotion::Prescribed(12e-6));
+    assert_eq!(scene.shaft.tilt_y, ShaftMotion::Prescribed(-1e-4));
+    assert_eq!(scene.shaft.x, ShaftMotion::Locked);
 }
 
 /// If this failed, a bearing without clearance (deep groove, contact angle 0) would be refused because of
@@ -162,12 +162,12 @@ fn zero_clearance_is_accepted() {
 fn the_delivered_scenes_are_valid() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes");
     let expected = [
-        ("7010c_preload", 2e3, None, 0, Motion::Locked),
-        ("7010c_radial_tilt_free", 2e3, Some(1e3), 0, Motion::Free),
-        ("7010c_radial_tilt_locked", 2e3, Some(1e3), 0, Motion::Locked),
-        ("7010c_preload_sweep", 2e3, None, 11, Motion::Locked),
-        ("7010c_radial_sweep", 2e3, Some(0.0), 7, Motion::Locked),
-        ("7010c_10kn_radial_sweep", 10e3, Some(0.0), 8, Motion::Locked),
+        ("7010c_preload", 2e3, None, 0, ShaftMotion::Locked),
+        ("7010c_radial_tilt_free", 2e3, Some(1e3), 0, ShaftMotion::Free),
+        ("7010c_radial_tilt_locked", 2e3, Some(1e3), 0, ShaftMotion::Locked),
+        ("7010c_preload_sweep", 2e3, None, 11, ShaftMotion::Locked),
+        ("7010c_radial_sweep", 2e3, Some(0.0), 7, ShaftMotion::Locked),
+        ("7010c_10kn_radial_sweep", 10e3, Some(0.0), 8, ShaftMotion::Locked),
     ];
     for (name, axial, radial, n_points, tilt) in expected {
         let path = folder.join(format!("{name}.toml"));
@@ -210,7 +210,7 @@ fn the_delivered_motions_are_valid() {
         assert_eq!(radial_of(&scene), Some(1e3), "{name}");
         assert_eq!(
             (scene.shaft.tilt_x, scene.shaft.tilt_y),
-            (Motion::Locked, Motion::Locked),
+            (ShaftMotion::Locked, ShaftMotion::Locked),
             "{name}"
         );
         let suffix = name.strip_prefix("7010c_1800rpm").unwrap_or("");

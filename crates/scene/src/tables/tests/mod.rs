@@ -24,10 +24,11 @@ mod ring_inertia;
 mod schedules;
 mod several;
 mod several_bodies;
+mod several_over_time;
 mod slips;
 mod sweeps;
 
-use dynamics::effects::Table as _;
+use dynamics::effects::EffectTable as _;
 use std::path::Path;
 
 use input::Schedule;

@@ -157,7 +157,8 @@ const REFUSED: [(&[&str], &str); 33] = [
     ),
     (
         &["materials.rings.expansion=\"11.5e-6\""],
-        "\"11.5e-6\" does not end with \"/K\"; expected a thermal expansion such as \"11.5e-6 /K\"",
+        "\"11.5e-6\" has no unit, of which \"/K\", \"1/K\", \"/degC\", \"1/degC\" are known; expected a thermal \
+         expansion such as \"11.5e-6 /K\"",
     ),
     (
         &["materials.rings.yield_strength=\"0 MPa\""],

@@ -48,7 +48,10 @@ fn probes_may_lie_anywhere_and_moments_be_about_any_point() {
         name: "rim".to_string(),
         ring: RingName::Inner,
         azimuth: 0.0,
-        point: SectionPoint::Anywhere([30e-3, -8e-3]),
+        point: SectionPoint::Anywhere {
+            radius: 30e-3,
+            z: -8e-3,
+        },
         axes: Axes::Cartesian,
         has_acceleration: false,
     };

@@ -36,10 +36,10 @@ fn every_key_of_the_program_is_in_the_reference_and_none_other() {
     tables.dedup();
     for table in tables {
         let taken = taken(table);
-        let of_table = |block: &&reference::Block| block.table == table;
+        let of_table = |block: &&reference::ReferenceTable| block.table == table;
         // The outer ring has "the same keys".
         let same = table.replace("outer", "inner");
-        let shown = |block: &&reference::Block| block.table == table || block.table == same;
+        let shown = |block: &&reference::ReferenceTable| block.table == table || block.table == same;
         let text: String = all
             .iter()
             .filter(shown)
@@ -64,7 +64,7 @@ fn every_key_of_the_program_is_in_the_reference_and_none_other() {
             );
         }
         let blocks = all.iter().filter(of_table);
-        for key in blocks.flat_map(reference::Block::keys) {
+        for key in blocks.flat_map(reference::ReferenceTable::keys) {
             let first = key.split('.').next().unwrap();
             assert!(
                 taken.iter().any(|t| t == first),
@@ -79,7 +79,7 @@ fn every_key_of_the_program_is_in_the_reference_and_none_other() {
 fn every_table_of_the_program_is_in_the_reference() {
     let all = reference::all();
     for table in taken("") {
-        let has = |block: &reference::Block| {
+        let has = |block: &reference::ReferenceTable| {
             block.table == table
                 || block.table.starts_with(&format!("{table}."))
                 || block.table.is_empty() && ["title", "include"].contains(&table.as_str())

@@ -125,9 +125,9 @@ fn all_loads_and_shaft_motions_take_schedules() {
     assert_eq!(effects.radial_force.unwrap().schedule(), expected(1.0));
     assert_eq!(effects.moment.unwrap().schedule(), expected(2.0));
     assert_eq!(effects.gravity.unwrap().schedule(), expected(3.0));
-    assert_eq!(scene.shaft.tilt_y, Motion::Prescribed(1e-3));
+    assert_eq!(scene.shaft.tilt_y, ShaftMotion::Prescribed(1e-3));
     assert_eq!(scene.shaft.schedules[4], expected(4.0));
-    assert_eq!(scene.shaft.y, Motion::Prescribed(-20e-6));
+    assert_eq!(scene.shaft.y, ShaftMotion::Prescribed(-20e-6));
     assert!(
         scene.shaft.schedules[..4]
             .iter()
@@ -160,7 +160,8 @@ fn shares_of_the_gyroscopic_moment_complete_each_other() {
         let text = with_lines(&format!("[effects.gyroscopic_moment]\n{keys}\n"));
         let scene = parse(&text, &[]).unwrap_or_else(|e| panic!("{e}"));
         let moment = scene.effects.gyroscopic_moment.unwrap();
-        assert_eq!(moment.shares(), shares, "{keys}");
+        let found = moment.shares();
+        assert_eq!([found.inner, found.outer], shares, "{keys}");
     }
     assert_eq!(parse(DYNAMIC, &[]).unwrap().effects.gyroscopic_moment, None);
 }
@@ -376,7 +377,7 @@ fn the_delivered_transients_are_valid() {
         );
         assert_eq!(
             (scene.shaft.tilt_x, scene.shaft.tilt_y),
-            (Motion::Locked, Motion::Locked),
+            (ShaftMotion::Locked, ShaftMotion::Locked),
             "{name}"
         );
         for ring in [&scene.inner, &scene.outer] {

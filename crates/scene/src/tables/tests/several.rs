@@ -139,7 +139,7 @@ fn the_example_is_a_list() {
         rear.scene.bearing.balls,
         parse(EXAMPLE, &[]).unwrap().bearing.balls
     );
-    assert_eq!(rear.scene.shaft.z, Motion::Prescribed(0.0));
+    assert_eq!(rear.scene.shaft.z, ShaftMotion::Prescribed(0.0));
 }
 
 /// Wrong: a bearing that is turned would feel weight, spin or a load of the shaft as one that is not.
@@ -247,15 +247,14 @@ fn a_bearing_of_a_list_can_be_put_where_its_shaft_is() {
     let scene = lists.several(&list(BEAM, ""), &[]);
     let q = [1.25e-6, -3e-7, 1.0 / 3.0 * 1e-5, 2e-5, -1e-6];
     let placed = scene.bearings[1].scene.with_shaft_at(q).unwrap();
-    assert_eq!(placed.shaft.z, Motion::Prescribed(q[2]));
-    assert_eq!(placed.shaft.tilt_y, Motion::Prescribed(q[4]));
+    assert_eq!(placed.shaft.z, ShaftMotion::Prescribed(q[2]));
+    assert_eq!(placed.shaft.tilt_y, ShaftMotion::Prescribed(q[4]));
     let again = Scene::parse(&placed.text, &placed.path, &[], MeshFiles::MayBeMissing).unwrap();
     assert_eq!(again.shaft, placed.shaft);
 }
 
-/// Wrong: slips in a list would be solved, or the message would not say what to do.
 /// A list in motion.
-fn moving(list: &str, more: &str) -> String {
+pub(super) fn moving(list: &str, more: &str) -> String {
     let analysis = format!("[dynamic]\nduration = \"100 us\"\nstep = \"1 us\"\n{more}");
     list.replace("[static]", &analysis)
 }
@@ -282,6 +281,7 @@ fn speeds_over_time_are_turned_with_their_bearing() {
     }
 }
 
+/// Wrong: slips in a list would be solved, or the message would not say what to do.
 #[test]
 fn bad_lists_are_refused_with_advice() {
     let lists = Lists::new("bad");
@@ -303,6 +303,11 @@ fn bad_lists_are_refused_with_advice() {
         (
             beam.replace("name = \"rear\"", "name = \"front\""),
             "bearing.name \"front\" stands twice; expected a name of its own for each bearing",
+        ),
+        (
+            beam.replace("name = \"rear\"", "name = \"figures\""),
+            "bearing.name of bearing 2 is \"figures\"; this name is reserved: the folder of a run has \"figures\" and \
+             \"superseded_1\" itself; expected a name that is not \"figures\" and does not begin with \"superseded\"",
         ),
         (
             beam.replace("name = \"rear\"", "name = \"rear one\""),
@@ -393,12 +398,8 @@ fn bad_lists_are_refused_with_advice() {
             "[speed] is given, but [modes] are those of a bearing that does not turn",
         ),
         (
-            beam.replace("[static]", "[quasi_static]\n"),
-            "[quasi_static] is not for a list of bearings yet",
-        ),
-        (
             beam.replace("[static]", ""),
-            "the scene has no analysis; add one of the tables [static], [sweep], [dynamic] and [modes]",
+            "the scene has no analysis; add one of the tables [static], [sweep], [quasi_static], [dynamic] and [modes]",
         ),
         (
             beam.replace("model = \"beam\"", "model = \"elastic\""),

@@ -118,3 +118,26 @@ fn bodies_that_fit_no_bearing_are_refused_with_advice() {
         assert!(found.contains(expected), "found: {found}\nexpected: {expected}");
     }
 }
+
+/// Wrong: of two bearings of one name the seats would be blamed, by a list that has that name twice.
+#[test]
+fn bearings_of_one_name_are_told_without_their_seats() {
+    let lists = Lists::new("twin_names");
+    let twins = list(BEAM, &two_seats("seat_b", "rear")).replace("name = \"rear\"", "name = \"front\"");
+    let found = lists.message(&twins);
+    assert!(
+        found.contains("bearing.name \"front\" stands twice; expected a name of its own for each bearing"),
+        "{found}"
+    );
+    assert!(!found.contains("expected one of"), "{found}");
+}
+
+/// Wrong: a bearing could have its folder where a run puts steps that it took back.
+#[test]
+fn names_of_folders_of_a_run_are_reserved() {
+    let lists = Lists::new("reserved_names");
+    let found = lists.message(&list(BEAM, "").replace("name = \"rear\"", "name = \"superseded_1\""));
+    let expected =
+        "bearing.name of bearing 2 is \"superseded_1\"; this name is reserved: the folder of a run has";
+    assert!(found.contains(expected), "{found}");
+}

@@ -1,0 +1,84 @@
+//! Files of a list of bearings over time: made for a new run, or opened where another has left them.
+
+use std::path::{Path, PathBuf};
+
+use assembly::Assembly;
+use comm::Communicator;
+use dynamics::Model;
+use results::cut::TableCut;
+use results::failure::{Failure, agree};
+use results::files::{Files, ResumedFrom};
+use results::several::SeveralTables;
+use results::snapshot::Snapshot;
+use results::state_arrays::Arrays;
+use results::survey::Survey;
+use scene::Scene;
+
+use crate::several_state::StoredBearing;
+
+/// Makes the files of all bearings, which begin as their snapshots show.
+pub fn create_files(
+    (assembly, dir): (&Assembly, &Path),
+    placed: &[Scene],
+    first: Vec<Snapshot>,
+    surveys: Vec<Survey>,
+) -> Result<Vec<Files>, Failure> {
+    let mut files = Vec::new();
+    for (i, (placed, survey)) in placed.iter().zip(surveys).enumerate() {
+        let mounted = &assembly.bearings[i];
+        let own = dir.join(&mounted.name);
+        let made = Files::create_part(placed, &mounted.model, &own, &first[i], survey, &[]);
+        files.push(agree(made)?);
+    }
+    Ok(files)
+}
+
+/// Opens the files of all bearings to go on after the step that was read, at which a bearing, by its number, is as in
+/// what `found` gives; returns their scenes too.
+pub fn resume_all<'m>(
+    bearings: Vec<StoredBearing>,
+    surveys: Vec<Survey>,
+    found: impl Fn(usize) -> (&'m Model, Snapshot, &'m Arrays),
+) -> Result<(Vec<Files>, Vec<Scene>), Failure> {
+    let (mut files, mut placed) = (Vec::new(), Vec::new());
+    for (i, (bearing, survey)) in bearings.into_iter().zip(surveys).enumerate() {
+        let (model, own, reduction) = found(i);
+        let (own, scene) = resume_files(bearing, model, survey, (own, reduction))?;
+        files.push(own);
+        placed.push(scene);
+    }
+    Ok((files, placed))
+}
+
+/// Opens the files of a bearing to go on after the step that was read, at which it is as in the snapshot; returns its
+/// scene too.
+fn resume_files(
+    bearing: StoredBearing,
+    model: &Model,
+    survey: Survey,
+    (own, reduction): (Snapshot, &Arrays),
+) -> Result<(Files, Scene), Failure> {
+    let from = ResumedFrom {
+        step: bearing.record.step,
+        tables: bearing.record.tables.as_ref(),
+        warnings: &[],
+        reduction,
+    };
+    let files = Files::resume(&bearing.scene, model, bearing.lock, &own, survey, &from);
+    Ok((agree(files)?, bearing.scene))
+}
+
+/// Opens the tables beside the folders of the bearings; what stands after the step is moved aside.
+pub fn resume_tables(cuts: &[TableCut], dir: &Path) -> Result<SeveralTables, Failure> {
+    if Communicator::world().is_root() {
+        results::files::say_folder(dir);
+    }
+    let mut aside = None;
+    let mut make_aside = || -> anyhow::Result<PathBuf> {
+        match &aside {
+            Some(folder) => Ok(PathBuf::clone(folder)),
+            None => Ok(aside.insert(checkpoint::new_superseded_folder(dir)?).clone()),
+        }
+    };
+    agree(SeveralTables::resume(cuts, &mut make_aside).map_err(Failure::from))
+}
