@@ -6,7 +6,7 @@
 //!
 //! As [`dynamics::whirl`] for one bearing: M has the shaft, the inner rings as rigid bodies at their places, and the
 //! balls; G is the gyroscopic matrix of all that turns, W the speed. What that leaves out is left out here too. Elastic
-//! bodies under the rings, on the shaft or in a housing, have rows of their own ([`crate::whirl_in_bodies`]).
+//! bodies under the rings, on the shaft or in a housing, have rows of their own (`whirl_in_bodies`).
 
 use contact::Side;
 use dynamics::bodies::AXES;
