@@ -300,11 +300,11 @@ fn a_list_says_what_it_has_not() {
     for (set, part) in [
         (
             "output.every.stress=2",
-            "[output.every] is for a list of bearings in motion, [dynamic], only",
+            "[output.every] is for a list of bearings over time, [quasi_static] or [dynamic], only",
         ),
         (
             "output.reduction.every=2",
-            "[output.reduction] is for a list of bearings in motion, [dynamic], only",
+            "[output.reduction] is for a list of bearings over time, [quasi_static] or [dynamic], only",
         ),
         (
             "output.region.z=[\"40 mm\", \"50 mm\"]",

@@ -276,7 +276,7 @@ fn a_changed_scene_is_refused_with_the_difference() {
         &["whole", "--step", "10", "--set", "effects.axial_force.value=1 kN"],
         &[
             "--set would change effects.axial_force.value from \"0.4 kN\" to \"1 kN\"",
-            "dynamic.duration, dynamic.output_every, output, life",
+            "dynamic.duration, dynamic.output_every, quasi_static.duration, quasi_static.output_every, output, life",
         ],
     );
     assert_same_run(&moved_beside(&dir), "first", "whole");
