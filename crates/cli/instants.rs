@@ -66,7 +66,9 @@ pub trait OverInstants {
         format!("step {n} of {}, t = {:.4e} s", self.due().last, self.time(n))
     }
     /// The line of progress before an instant is computed, where one is due; `first` is the first of this process.
-    fn stage(&self, n: u64, first: u64) -> Option<String>;
+    fn stage(&self, n: u64, first: u64) -> Option<String> {
+        (n == first || n % PROGRESS_STEPS == 1).then(|| self.step_text(n))
+    }
     /// Computes the instant `n` from the one before, which stays the known one on failure.
     fn advance(&mut self, n: u64, progress: &mut Progress) -> Result<(), Failure>;
 

@@ -1,19 +1,25 @@
 //! Files of a list of bearings over time: made for a new run, or opened where another has left them.
 
 use std::path::{Path, PathBuf};
+use std::time::Instant;
 
-use assembly::Assembly;
+use assembly::{Assembly, MountedBearing};
 use comm::Communicator;
 use dynamics::Model;
 use results::cut::TableCut;
 use results::failure::{Failure, agree};
 use results::files::{Files, ResumedFrom};
+use results::memory::Forecasts;
+use results::seat::SeatSummaries;
 use results::several::SeveralTables;
 use results::snapshot::Snapshot;
 use results::state_arrays::Arrays;
+use results::summary::{Findings, Summary};
 use results::survey::Survey;
 use scene::Scene;
+use timer::Laps;
 
+use crate::several::of_seats;
 use crate::several_state::StoredBearing;
 
 /// Makes the files of all bearings, which begin as their snapshots show.
@@ -66,6 +72,23 @@ fn resume_files(
     };
     let files = Files::resume(&bearing.scene, model, bearing.lock, &own, survey, &from);
     Ok((agree(files)?, bearing.scene))
+}
+
+/// Closes the files of a bearing, whose scene is `placed`, and writes its summary into its folder; the warnings of its
+/// seats, which are found when the files are closed. Collective.
+pub fn close_bearing(
+    files: Files,
+    (placed, mounted, own): (&Scene, &MountedBearing, &Path),
+    (findings, forecast, laps): (Findings, Forecasts, Laps),
+    seats: impl FnOnce(&Path) -> Result<SeatSummaries, Failure>,
+    start: Instant,
+) -> Result<Vec<String>, Failure> {
+    let costs = agree(files.finish(0.0, forecast, laps, start))?;
+    let seats = agree(seats(own))?;
+    let warnings = of_seats(&mounted.name, &seats);
+    let summary = Summary::new(placed, &mounted.model, findings, &costs).with_seats(seats);
+    agree(summary.write(own).map_err(Failure::from))?;
+    Ok(warnings)
 }
 
 /// Opens the tables beside the folders of the bearings; what stands after the step is moved aside.

@@ -21,17 +21,17 @@ use results::several_print::print_solution;
 use results::shown::Shown;
 use results::snapshot::Snapshot;
 use results::stop::Stop;
-use results::summary::{Findings, READ, Summary, TOTAL};
+use results::summary::{Findings, READ, TOTAL};
 use results::watch::Watch;
 use scene::{Dynamic, Scene, SeveralScene};
 use timer::{Laps, Stopwatch};
 
-use crate::instants::{self, Due, OverInstants, PROGRESS_STEPS, WrittenSteps};
+use crate::instants::{self, Due, OverInstants, WrittenSteps};
 use crate::motion::LAST_GOOD;
 use crate::options::Limits;
 use crate::progress::Progress;
-use crate::several::{self, make_folder, of_seats, require_same_list, say_types, solving, warnings_at};
-use crate::several_files::{create_files, resume_all, resume_tables};
+use crate::several::{self, make_folder, require_same_list, say_types, solving, warnings_at};
+use crate::several_files::{close_bearing, create_files, resume_all, resume_tables};
 use crate::several_ledger::check_ledgers;
 use crate::several_read::{ReadList, read_list, require_memory_of_all};
 use crate::several_ready::{ready, require_space};
@@ -132,9 +132,9 @@ pub fn resume(
     let first = ListState::of_motion(&assembly, &motion, &restored.state);
     // Nothing is changed before all is known to fit.
     let cuts = agree(SeveralTables::cuts(&dir, &first, step).map_err(Failure::from))?;
-    let snapshots = snapshots(&motion, &restored.state);
     let model = |i: usize| &assembly.bearings[i].model;
-    let found = |i: usize| (model(i), snapshots[i].clone(), &restored.reductions[i]);
+    let snapshot = |i: usize| Snapshot::of_motion(&motion.bearings[i], &restored.state.bearings[i]);
+    let found = |i: usize| (model(i), snapshot(i), &restored.reductions[i]);
     let (files, placed) = resume_all(bearings, surveys, found)?;
     let tables = resume_tables(&cuts, &dir)?;
     let march = ListMarch {
@@ -220,16 +220,12 @@ impl ListMarch<'_> {
             let own = watch.warnings(motion.surfaces(), |step| motion.time(step));
             warnings.extend(own.into_iter().map(|text| format!("bearing {name:?}: {text}")));
         }
-        match self.close_bearings(&status, start) {
-            Ok(of_seats) => warnings.extend(of_seats),
-            // A run that failed says why, not what its failure did to the files.
-            Err(failure) => {
-                return Err(match ended {
-                    Err(cause @ (Failure::User(_) | Failure::Numerical(_))) => cause,
-                    _ => failure,
-                });
-            }
-        }
+        // A run that failed says why, not what its failure did to the files; one that stopped must have its step.
+        let of_seats = match (self.close_bearings(&status, start), &ended) {
+            (Err(_), Err(Failure::User(_) | Failure::Numerical(_))) => return ended,
+            (of_seats, _) => of_seats?,
+        };
+        warnings.extend(of_seats);
         self.laps.add(TOTAL, start.elapsed().as_secs_f64());
         let last = ListState::of_motion(self.assembly, self.motion, &self.state);
         let findings = SeveralFindings {
@@ -263,7 +259,6 @@ impl ListMarch<'_> {
         for (i, files) in std::mem::take(&mut self.files).into_iter().enumerate() {
             let (motion, state) = (&self.motion.bearings[i], &self.state.bearings[i]);
             let forecast = Forecasts::of_motion([None, None], motion, self.dynamic);
-            let costs = agree(files.finish(0.0, forecast, motion.costs.laps(), start))?;
             let findings = Findings {
                 status: status.to_string(),
                 last: Snapshot::of_motion(motion, state),
@@ -272,12 +267,14 @@ impl ListMarch<'_> {
                 warnings: self.watches[i].warnings(motion.surfaces(), |step| motion.time(step)),
                 advice: Vec::new(),
             };
-            let own = self.dir.join(&self.scene.bearings[i].name);
-            let model = &self.assembly.bearings[i].model;
-            let seats = agree(seat::of_motion(motion, state, &own))?;
-            warnings.extend(of_seats(&self.scene.bearings[i].name, &seats));
-            let summary = Summary::new(&self.placed[i], model, findings, &costs).with_seats(seats);
-            agree(summary.write(&own).map_err(Failure::from))?;
+            let mounted = &self.assembly.bearings[i];
+            warnings.extend(close_bearing(
+                files,
+                (&self.placed[i], mounted, &self.dir.join(&mounted.name)),
+                (findings, forecast, motion.costs.laps()),
+                |own| seat::of_motion(motion, state, own),
+                start,
+            )?);
         }
         Ok(warnings)
     }
@@ -323,10 +320,6 @@ impl OverInstants for ListMarch<'_> {
 
     fn time(&self, n: u64) -> f64 {
         self.motion.time(n)
-    }
-
-    fn stage(&self, n: u64, first: u64) -> Option<String> {
-        (n == first || n % PROGRESS_STEPS == 1).then(|| self.step_text(n))
     }
 
     fn advance(&mut self, _n: u64, progress: &mut Progress) -> Result<(), Failure> {

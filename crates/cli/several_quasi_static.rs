@@ -24,15 +24,15 @@ use results::several_print::print_solution;
 use results::shown::Shown;
 use results::snapshot::Snapshot;
 use results::stop::Stop;
-use results::summary::{Findings, READ, Summary, TOTAL};
+use results::summary::{Findings, READ, TOTAL};
 use scene::{QuasiStatic, Scene, SeveralScene, loads_on_shaft, rolling};
 use timer::{Laps, Stopwatch};
 
-use crate::instants::{self, Due, OverInstants, PROGRESS_STEPS, WrittenSteps};
+use crate::instants::{self, Due, OverInstants, WrittenSteps};
 use crate::options::Limits;
 use crate::progress::Progress;
-use crate::several::{self, make_folder, of_seats, require_same_list, say_types, solving, warnings_at};
-use crate::several_files::{create_files, resume_all, resume_tables};
+use crate::several::{self, make_folder, require_same_list, say_types, solving, warnings_at};
+use crate::several_files::{close_bearing, create_files, resume_all, resume_tables};
 use crate::several_quasi_state::{self, ListCounts};
 use crate::several_read::{ReadList, read_list, require_memory_of_all};
 use crate::several_ready::require_space;
@@ -289,16 +289,12 @@ impl ListEquilibria<'_> {
                 self.counts.warned
             ));
         }
-        match self.close_bearings(&status, start) {
-            Ok(of_seats) => warnings.extend(of_seats),
-            // A run that failed says why, not what its failure did to the files.
-            Err(failure) => {
-                return Err(match ended {
-                    Err(cause @ (Failure::User(_) | Failure::Numerical(_))) => cause,
-                    _ => failure,
-                });
-            }
-        }
+        // A run that failed says why, not what its failure did to the files; one that stopped must have its step.
+        let of_seats = match (self.close_bearings(&status, start), &ended) {
+            (Err(_), Err(Failure::User(_) | Failure::Numerical(_))) => return ended,
+            (of_seats, _) => of_seats?,
+        };
+        warnings.extend(of_seats);
         let mut laps = Laps::default();
         laps.add(READ, read);
         laps.merge(&self.list.solver.laps());
@@ -333,8 +329,7 @@ impl ListEquilibria<'_> {
             let (mounted, factors) = (&self.list.assembly.bearings[i], self.list.solver.of_bearing(i));
             let forecast = Side::BOTH.map(|side| factors.ring(side).map(|r| r.solver.memory));
             let forecast = Forecasts::at_rest(forecast, &mounted.model);
-            let costs = agree(files.finish(0.0, forecast, factors.laps(), start))?;
-            let (found, own) = (&self.last.bearings[i], self.dir.join(&mounted.name));
+            let found = &self.last.bearings[i];
             let [rounds, newton] = self.counts.of_bearings[i].map(|count| count as usize);
             let steps = self.step as usize;
             let findings = Findings {
@@ -345,10 +340,13 @@ impl ListEquilibria<'_> {
                 warnings: found.warnings.clone(),
                 advice: Vec::new(),
             };
-            let seats = agree(seat::of_run(&mounted.model, found, &own))?;
-            warnings.extend(of_seats(&mounted.name, &seats));
-            let summary = Summary::new(&self.placed[i], &mounted.model, findings, &costs).with_seats(seats);
-            agree(summary.write(&own).map_err(Failure::from))?;
+            warnings.extend(close_bearing(
+                files,
+                (&self.placed[i], mounted, &self.dir.join(&mounted.name)),
+                (findings, forecast, factors.laps()),
+                |own| seat::of_run(&mounted.model, found, own),
+                start,
+            )?);
         }
         Ok(warnings)
     }
@@ -377,10 +375,6 @@ impl OverInstants for ListEquilibria<'_> {
 
     fn time(&self, n: u64) -> f64 {
         self.list.time(n)
-    }
-
-    fn stage(&self, n: u64, first: u64) -> Option<String> {
-        (n == first || n % PROGRESS_STEPS == 1).then(|| self.step_text(n))
     }
 
     fn advance(&mut self, n: u64, progress: &mut Progress) -> Result<(), Failure> {

@@ -13,16 +13,17 @@ use results::seat;
 use results::several::{ListState, SeveralFindings, SeveralSummary, SeveralTables};
 use results::several_print::{print_solution, print_sweep_head, print_sweep_point};
 use results::shown::Shown;
-use results::summary::{Findings, READ, Summary, TOTAL};
+use results::summary::{Findings, READ, TOTAL};
 use results::survey::Survey;
 use scene::{KeptFields, SeveralScene, assembly_with_rings};
 
 use crate::instants::{self, Due, OverInstants, WrittenSteps};
 use crate::progress::Progress;
 use crate::several::{
-    SeveralPoint, at_point, column, make_folder, of_seats, placed, points, require_same_list, say_types,
-    snapshot, solving, stage_text, warnings_at, words_of,
+    SeveralPoint, at_point, column, make_folder, placed, points, require_same_list, say_types, snapshot,
+    solving, stage_text, warnings_at, words_of,
 };
+use crate::several_files::close_bearing;
 use crate::several_read::{ReadList, read_list, require_memory_of_all};
 
 /// Runs a scene at rest; its results go into a folder.
@@ -305,12 +306,8 @@ impl SeveralFiles {
         for (i, (dir, files)) in self.bearings.into_iter().enumerate() {
             let factors = solver.of_bearing(i);
             let forecast = Side::BOTH.map(|side| factors.ring(side).map(|r| r.solver.memory));
-            let costs = agree(files.finish(
-                0.0,
-                Forecasts::at_rest(forecast, &assembly.bearings[i].model),
-                factors.laps(),
-                start,
-            ))?;
+            let mounted = &assembly.bearings[i];
+            let forecast = Forecasts::at_rest(forecast, &mounted.model);
             let found = &solution.bearings[i];
             let findings = Findings {
                 status: "finished".to_string(),
@@ -323,12 +320,13 @@ impl SeveralFiles {
                 warnings: found.warnings.clone(),
                 advice: Vec::new(),
             };
-            let bearing = &scene.bearings[i].scene;
-            let model = &assembly.bearings[i].model;
-            let seats = agree(seat::of_run(model, found, &dir))?;
-            warnings.extend(of_seats(&scene.bearings[i].name, &seats));
-            let summary = Summary::new(bearing, model, findings, &costs).with_seats(seats);
-            agree(summary.write(&dir).map_err(Failure::from))?;
+            warnings.extend(close_bearing(
+                files,
+                (&scene.bearings[i].scene, mounted, &dir),
+                (findings, forecast, factors.laps()),
+                |own| seat::of_run(&mounted.model, found, own),
+                start,
+            )?);
         }
         Ok(warnings)
     }

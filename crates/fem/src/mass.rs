@@ -64,14 +64,7 @@ pub fn assemble_node_mass(
 /// not one of revolution adds to that is left out.
 pub fn assemble_azimuthal_mass(mesh: &Mesh, material: &Material) -> Result<CsMat<f64>, FemError> {
     let pattern = Pattern::new(mesh)?;
-    material.validate()?;
-    let kernel = NodeMass::new(mesh.kind, material);
-    let n = mesh.kind.n_nodes();
-    let compute = |e: usize, matrix: &mut [f64]| kernel.azimuthal(mesh, e, matrix);
-    let mut scalars = vec![0.0; pattern.n_pairs()];
-    for_each_element(mesh.n_elements(), n * n, compute, |e, matrix| {
-        pattern.add_scalars(e, mesh.element(e), matrix, &mut scalars);
-    })?;
+    let scalars = node_scalars(&pattern, mesh, material, NodeMass::azimuthal)?;
     let mut values = vec![0.0; pattern.n_values()];
     pattern.spread(&scalars, &mut values);
     Ok(pattern.matrix(values))
@@ -79,6 +72,16 @@ pub fn assemble_azimuthal_mass(mesh: &Mesh, material: &Material) -> Result<CsMat
 
 /// Values of the mass between nodes, kg, one per pair of neighbours.
 fn node_mass(pattern: &Pattern, mesh: &Mesh, material: &Material) -> Result<Vec<f64>, FemError> {
+    node_scalars(pattern, mesh, material, NodeMass::compute)
+}
+
+/// The sum over elements of what `of` writes between their nodes, `[n][n]`, one value per pair of neighbours.
+fn node_scalars(
+    pattern: &Pattern,
+    mesh: &Mesh,
+    material: &Material,
+    of: impl Fn(&NodeMass, &Mesh, usize, &mut [f64]) -> Result<(), FemError> + Sync,
+) -> Result<Vec<f64>, FemError> {
     assert_eq!(
         pattern.n_nodes(),
         mesh.n_nodes(),
@@ -87,7 +90,7 @@ fn node_mass(pattern: &Pattern, mesh: &Mesh, material: &Material) -> Result<Vec<
     material.validate()?;
     let kernel = NodeMass::new(mesh.kind, material);
     let n = mesh.kind.n_nodes();
-    let compute = |e: usize, matrix: &mut [f64]| kernel.compute(mesh, e, matrix);
+    let compute = |e: usize, matrix: &mut [f64]| of(&kernel, mesh, e, matrix);
     let mut scalars = vec![0.0; pattern.n_pairs()];
     for_each_element(mesh.n_elements(), n * n, compute, |e, matrix| {
         pattern.add_scalars(e, mesh.element(e), matrix, &mut scalars);

@@ -87,15 +87,9 @@ impl SectorCholesky {
 
     /// All dense right-hand sides in the i-th sector owned.
     fn sweep_dense(&self, i: usize, loads: RightHandSides<'_>) -> Swept {
-        let (sector, places) = (&self.shared.own_sectors()[i], &self.shared.parts[i].places);
         let n_rhs = loads.n_dense;
-        let mut x = vec![0.0; n_rhs * sector.n_rows()];
-        for (&row, &place) in sector.rows[..sector.n_interior].iter().zip(places) {
-            let x = &mut x[n_rhs * place as usize..][..n_rhs];
-            x.iter_mut()
-                .enumerate()
-                .for_each(|(r, x)| *x = loads.dense[self.shared.layout.n() * r + row as usize]);
-        }
+        let mut x = vec![0.0; n_rhs * self.shared.own_sectors()[i].n_rows()];
+        self.put_dense(i, loads, &mut x, n_rhs);
         self.swept(i, (0..n_rhs).collect(), x)
     }
 
@@ -121,7 +115,6 @@ impl SectorCholesky {
 
     /// The forward sweep of a sector, `x` by places, `[n_rows][columns]`.
     fn swept(&self, i: usize, columns: Vec<usize>, mut x: Vec<f64>) -> Swept {
-        let (sector, places) = (&self.shared.own_sectors()[i], &self.shared.parts[i].places);
         let n_rhs = columns.len();
         if n_rhs == 0 {
             return Swept {
@@ -131,9 +124,8 @@ impl SectorCholesky {
             };
         }
         self.parts[i].forward(&mut x, n_rhs);
-        let at = |place: &u32| &x[n_rhs * *place as usize..][..n_rhs];
-        let boundary = places[sector.n_interior..].iter().flat_map(at).copied().collect();
-        x.truncate(n_rhs * sector.n_interior);
+        let boundary = self.boundary(i, &x, n_rhs);
+        x.truncate(n_rhs * self.shared.own_sectors()[i].n_interior);
         Swept {
             columns,
             values: x,
@@ -154,22 +146,18 @@ impl SectorCholesky {
         for (halves, factors) in terms {
             add_combined(&mut interface, &halves.interface, factors);
         }
-        let solve = |(i, part): (usize, &super::part::Part)| {
-            let (sector, places) = (&shared.own_sectors()[i], &shared.parts[i].places);
-            let mut x = vec![0.0; sector.n_rows()];
+        let solve = |i: usize| {
+            let mut x = vec![0.0; shared.own_sectors()[i].n_rows()];
             for (halves, factors) in terms {
                 let Swept { columns, values, .. } = &halves.local[i];
                 let factors: Vec<f64> = columns.iter().map(|&column| factors[column]).collect();
                 add_combined(&mut x, values, &factors);
             }
-            for (&place, &at) in places[sector.n_interior..].iter().zip(&sector.boundary) {
-                x[place as usize] = interface[at];
-            }
-            part.backward(&mut x, 1);
+            self.backward(i, &mut x, &interface, 1);
             x
         };
         // The sectors whose factors were read last come first: they may still be in the cache.
-        let local = self.parts.par_iter().enumerate().rev().map(solve);
+        let local = (0..self.parts.len()).into_par_iter().rev().map(solve);
         let mut local: Vec<Vec<f64>> = local.collect();
         local.reverse();
         let mut whole = vec![0.0; shared.layout.n()];

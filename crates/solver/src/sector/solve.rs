@@ -88,29 +88,12 @@ impl SectorCholesky {
             };
         }
         let mut local = self.forward(loads);
-        let mut sent = Vec::new();
-        let parts = local.iter().zip(&self.shared.parts);
-        for ((x, part), sector) in parts.zip(self.shared.own_sectors()) {
-            for &place in &part.places[sector.n_interior..] {
-                sent.extend_from_slice(&x[n_rhs * place as usize..][..n_rhs]);
-            }
-        }
+        let boundaries = local.iter().enumerate().map(|(i, x)| self.boundary(i, x, n_rhs));
+        let sent = boundaries.collect::<Vec<_>>().concat();
         let interface = self.solve_interface(self.interface_loads(loads, sent), n_rhs);
-        let sectors = self.shared.own_sectors();
-        let parts = self.parts.iter().zip(&self.shared.parts).zip(sectors);
-        let pairs: Vec<_> = local.iter_mut().zip(parts).collect();
         // The sectors whose factors were read last come first: they may still be in the cache.
-        pairs
-            .into_par_iter()
-            .rev()
-            .for_each(|(x, ((part, symbolic), sector))| {
-                let places = &symbolic.places[sector.n_interior..];
-                for (&place, &at) in places.iter().zip(&sector.boundary) {
-                    let (place, at) = (n_rhs * place as usize, n_rhs * at);
-                    x[place..place + n_rhs].copy_from_slice(&interface[at..at + n_rhs]);
-                }
-                part.backward(x, n_rhs);
-            });
+        let sectors = local.par_iter_mut().enumerate().rev();
+        sectors.for_each(|(i, x)| self.backward(i, x, &interface, n_rhs));
         SectorColumns {
             shared: self.shared.clone(),
             n_columns: n_rhs,
@@ -121,20 +104,13 @@ impl SectorCholesky {
 
     /// y and -F y of the sectors owned, by places, `[n_rows][n_rhs]` each.
     fn forward(&self, loads: RightHandSides<'_>) -> Vec<Vec<f64>> {
-        let (n, n_rhs) = (self.n(), loads.n_rhs());
+        let n_rhs = loads.n_rhs();
         let first = self.shared.owned().start;
         let forward = |(i, part): (usize, &Part)| {
             let sector = &self.shared.layout.sectors()[first + i];
             let places = &self.shared.parts[i].places;
             let mut x = vec![0.0; n_rhs * sector.n_rows()];
-            if loads.n_dense > 0 {
-                for (&row, &place) in sector.rows[..sector.n_interior].iter().zip(places) {
-                    let x = &mut x[n_rhs * place as usize..][..loads.n_dense];
-                    x.iter_mut()
-                        .enumerate()
-                        .for_each(|(r, x)| *x = loads.dense[n * r + row as usize]);
-                }
-            }
+            self.put_dense(i, loads, &mut x, n_rhs);
             for (r, load) in loads.sparse.iter().enumerate() {
                 for &(row, value) in load {
                     if self.shared.layout.place(row) == RowPlace::Inside(first + i) {
@@ -147,6 +123,37 @@ impl SectorCholesky {
             x
         };
         self.parts.par_iter().enumerate().map(forward).collect()
+    }
+
+    /// Puts dense right-hand sides inside the i-th sector owned first among those by places, `[n_rows][n_rhs]`.
+    pub(super) fn put_dense(&self, i: usize, loads: RightHandSides<'_>, x: &mut [f64], n_rhs: usize) {
+        if loads.n_dense == 0 {
+            return;
+        }
+        let (sector, places) = (&self.shared.own_sectors()[i], &self.shared.parts[i].places);
+        for (&row, &place) in sector.rows[..sector.n_interior].iter().zip(places) {
+            let x = &mut x[n_rhs * place as usize..][..loads.n_dense];
+            x.iter_mut()
+                .enumerate()
+                .for_each(|(r, x)| *x = loads.dense[self.n() * r + row as usize]);
+        }
+    }
+
+    /// Values on the boundary of the i-th sector owned, `[boundary][n_rhs]`, of those by places.
+    pub(super) fn boundary(&self, i: usize, x: &[f64], n_rhs: usize) -> Vec<f64> {
+        let (sector, places) = (&self.shared.own_sectors()[i], &self.shared.parts[i].places);
+        let at = |place: &u32| &x[n_rhs * *place as usize..][..n_rhs];
+        places[sector.n_interior..].iter().flat_map(at).copied().collect()
+    }
+
+    /// The backward sweep of the i-th sector owned from the solution on the interface, by places, `[n_rows][n_rhs]`.
+    pub(super) fn backward(&self, i: usize, x: &mut [f64], interface: &[f64], n_rhs: usize) {
+        let (sector, places) = (&self.shared.own_sectors()[i], &self.shared.parts[i].places);
+        for (&place, &at) in places[sector.n_interior..].iter().zip(&sector.boundary) {
+            let (place, at) = (n_rhs * place as usize, n_rhs * at);
+            x[place..place + n_rhs].copy_from_slice(&interface[at..at + n_rhs]);
+        }
+        self.parts[i].backward(x, n_rhs);
     }
 
     /// What reaches the interface, `[places][n_rhs]`, on all ranks: loads, and `-F y` of the boundaries of the sectors
