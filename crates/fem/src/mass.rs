@@ -64,7 +64,9 @@ pub fn assemble_node_mass(
 /// not one of revolution adds to that is left out.
 pub fn assemble_azimuthal_mass(mesh: &Mesh, material: &Material) -> Result<CsMat<f64>, FemError> {
     let pattern = Pattern::new(mesh)?;
-    let scalars = node_scalars(&pattern, mesh, material, NodeMass::azimuthal)?;
+    material.validate()?;
+    let kernel = NodeMass::new(mesh.kind, material);
+    let scalars = node_scalars(&pattern, mesh, |e, matrix| kernel.azimuthal(mesh, e, matrix))?;
     let mut values = vec![0.0; pattern.n_values()];
     pattern.spread(&scalars, &mut values);
     Ok(pattern.matrix(values))
@@ -72,25 +74,23 @@ pub fn assemble_azimuthal_mass(mesh: &Mesh, material: &Material) -> Result<CsMat
 
 /// Values of the mass between nodes, kg, one per pair of neighbours.
 fn node_mass(pattern: &Pattern, mesh: &Mesh, material: &Material) -> Result<Vec<f64>, FemError> {
-    node_scalars(pattern, mesh, material, NodeMass::compute)
+    material.validate()?;
+    let kernel = NodeMass::new(mesh.kind, material);
+    node_scalars(pattern, mesh, |e, matrix| kernel.compute(mesh, e, matrix))
 }
 
-/// The sum over elements of what `of` writes between their nodes, `[n][n]`, one value per pair of neighbours.
-fn node_scalars(
+/// The sum over elements of what `compute` writes between their nodes, `[n][n]`, one value per pair of neighbours.
+pub(crate) fn node_scalars(
     pattern: &Pattern,
     mesh: &Mesh,
-    material: &Material,
-    of: impl Fn(&NodeMass, &Mesh, usize, &mut [f64]) -> Result<(), FemError> + Sync,
+    compute: impl Fn(usize, &mut [f64]) -> Result<(), FemError> + Sync,
 ) -> Result<Vec<f64>, FemError> {
     assert_eq!(
         pattern.n_nodes(),
         mesh.n_nodes(),
         "the pattern belongs to another mesh"
     );
-    material.validate()?;
-    let kernel = NodeMass::new(mesh.kind, material);
     let n = mesh.kind.n_nodes();
-    let compute = |e: usize, matrix: &mut [f64]| of(&kernel, mesh, e, matrix);
     let mut scalars = vec![0.0; pattern.n_pairs()];
     for_each_element(mesh.n_elements(), n * n, compute, |e, matrix| {
         pattern.add_scalars(e, mesh.element(e), matrix, &mut scalars);

@@ -13,6 +13,7 @@ use std::collections::BTreeMap;
 use mesh::{Mesh, Periodicity};
 
 use crate::chunks::for_each_element;
+use crate::element::MAX_NODES;
 use crate::error::FemError;
 use crate::geometry::check_connectivity;
 use crate::mass::NodeMass;
@@ -97,10 +98,18 @@ fn mass_blocks<'a>(
     material: &Material,
 ) -> impl Fn(usize, &mut [f64]) -> Result<(), FemError> + Sync + 'a {
     let kernel = NodeMass::new(mesh.kind, material);
+    scalar_blocks(mesh, move |e, scalars| kernel.compute(mesh, e, scalars))
+}
+
+/// Computes `[3 n][3 n]` of an element, of what `compute` writes between its nodes times the identity.
+pub(crate) fn scalar_blocks<'a>(
+    mesh: &'a Mesh,
+    compute: impl Fn(usize, &mut [f64]) -> Result<(), FemError> + Sync + 'a,
+) -> impl Fn(usize, &mut [f64]) -> Result<(), FemError> + Sync + 'a {
     let n = mesh.kind.n_nodes();
     move |e, matrix| {
-        let mut scalars = [0.0; 400];
-        kernel.compute(mesh, e, &mut scalars[..n * n])?;
+        let mut scalars = [0.0; MAX_NODES * MAX_NODES];
+        compute(e, &mut scalars[..n * n])?;
         matrix.fill(0.0);
         for a in 0..n {
             for b in 0..n {
@@ -142,7 +151,7 @@ pub(crate) fn coupling(periodicity: &Periodicity, a: usize, b: usize) -> SectorC
 }
 
 /// Sums the elements of a sector, each turned to cylindrical components.
-fn add_elements(
+pub(crate) fn add_elements(
     mesh: &Mesh,
     periodicity: &Periodicity,
     couplings: &[SectorCoupling],

@@ -7,6 +7,7 @@ mod loads;
 mod matrices;
 mod patch;
 mod points;
+mod prestress;
 mod reference;
 mod rings;
 mod sector;
