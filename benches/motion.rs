@@ -60,9 +60,9 @@ fn bearing(level: Level, frame_rotation: bool) -> Model {
     };
     let mut model = case.flexible(ContactMode::Patch, level, Hold::Clamped);
     if frame_rotation {
-        model.effects.push(Box::new(FrameRotation {
-            speeds: Speed::constant(SPEED).into(),
-        }));
+        model
+            .effects
+            .push(Box::new(FrameRotation::new(Speed::constant(SPEED))));
     }
     model
 }

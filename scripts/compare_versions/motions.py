@@ -8,6 +8,7 @@ MASS = "shaft.mass=0.5 kg"
 FREE_TILT = ("shaft.tilt_x=free", "shaft.tilt_y=free", MASS)
 LOW_PRELOAD = "effects.axial_force.value=0.4 kN"
 FRAME = "[effects.frame_rotation]\n[effects.ball_centrifugal]\n"
+STIFFENED = "[effects.frame_rotation]\nstress_stiffening = true\n"
 KEYWAY = '[[inner.cut]]\nazimuth = ["84 deg", "96 deg"]\nz = ["5 mm", "8 mm"]\n'
 # Steps are retried in halves down to dt / 64 and rise again.
 ADAPTIVE = "halvings = 6\nadaptive = { tolerance = 1e-2 }"
@@ -88,6 +89,7 @@ SUPPORTS = [
 ]
 RINGS = [
     motion("frame_rotation", dynamic() + FRAME + DAMPING, LOW_PRELOAD, resume=(10,), threads=True),
+    motion("stress_stiffening", dynamic() + STIFFENED + DAMPING, edits=MEAN, resume=(10,), threads=True),
     motion("rayleigh_mean", dynamic() + FRAME + DAMPING, edits=MEAN),
     motion("keyway_frame", dynamic(every=1) + FRAME + KEYWAY, LOW_PRELOAD, resume=EVERY, threads=True),
     motion("keyway_mean", dynamic() + FRAME + DAMPING + KEYWAY, edits=MEAN),

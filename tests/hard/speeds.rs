@@ -200,9 +200,7 @@ fn run_up_flexible(record: &mut Record) {
     let speed = speeds([1800.0, 18_000.0], 1e-3);
     let mut model = flexible(Load::dead(2e3), Load::dead(0.0));
     add_centrifugal(&mut model, &speed);
-    model.effects.push(Box::new(FrameRotation {
-        speeds: speed.clone().into(),
-    }));
+    model.effects.push(Box::new(FrameRotation::new(speed.clone())));
     model.effects.push(Box::new(GyroscopicMoment {
         speeds: speed.clone().into(),
         slip: [0.0; 2],

@@ -15,7 +15,7 @@ use contact::{BearingGeometry, HertzContact, LeastSize, Meridian, NodalWeights, 
 use fem::Material;
 use input::Schedule;
 use ring::rigid::RigidInertia;
-use ring::{Backend, RingModel};
+use ring::{Backend, Frame, RingModel};
 use serde::Deserialize;
 use timer::SharedLaps;
 
@@ -172,6 +172,11 @@ pub trait Effect: Send + Sync {
         false
     }
 
+    /// Whether the stress of a ring in its turning frame stiffens it.
+    fn stiffens(&self, _side: Side) -> bool {
+        false
+    }
+
     /// Slot of interactions: the spring that holds the outer ring along the axis, whose seat then slides.
     fn seat(&self) -> Option<Seat> {
         None
@@ -276,6 +281,16 @@ impl Model {
     /// Whether a ring has the inertia of its turning frame.
     pub fn turns_frame(&self, side: Side) -> bool {
         self.effects.iter().any(|effect| effect.turns_frame(side))
+    }
+
+    /// The frame of a ring.
+    pub fn frame(&self, side: Side) -> Frame {
+        let stiffens = self.effects.iter().any(|effect| effect.stiffens(side));
+        match (self.turns_frame(side), stiffens) {
+            (false, _) => Frame::Still,
+            (true, false) => Frame::Turning,
+            (true, true) => Frame::Stiffened,
+        }
     }
 
     /// The seat of the outer ring, if it slides along the axis.

@@ -8,6 +8,7 @@ use dynamics::interactions::contact_damping::ContactDamping;
 use dynamics::kinematics::Speed;
 use dynamics::motion::{Integrator, Motion, MotionSettings, MotionState, StepCache};
 use dynamics::{Backend, ContactMode, Hold, Model, Sectors, ShaftDof, StaticSolution};
+use ring::Frame;
 use support::rings::{self, Level};
 use support::{Case, equilibrium};
 
@@ -56,9 +57,7 @@ fn free_flight(speed: Speed, dt: f64, n: usize, v: f64) -> [f64; 2] {
     model.rings[1] = None;
     // Room for the ring: a large clearance.
     model.geometry.outer_raceway_diameter += 0.1e-3;
-    model.effects = vec![Box::new(FrameRotation {
-        speeds: speed.clone().into(),
-    })];
+    model.effects = vec![Box::new(FrameRotation::new(speed.clone()))];
     // A shaft that flies beside its ring.
     model.shaft[2] = ShaftDof::Free;
     model.shaft_mass = 1.0;
@@ -185,9 +184,7 @@ fn a_spinning_ring_rests_in_its_static_expansion() {
     let speed = Speed::constant(30_000.0 * std::f64::consts::PI / 30.0);
     let mut model = Case::axial(1000.0).flexible(ContactMode::Patch, SMALL, Hold::MeanMotion);
     let still = equilibrium(&model);
-    model.effects.push(Box::new(FrameRotation {
-        speeds: speed.clone().into(),
-    }));
+    model.effects.push(Box::new(FrameRotation::new(speed.clone())));
     let start = equilibrium(&model);
     // The expansion of the ring closes the clearance: less axial approach under the same thrust.
     assert!(still.displacements.shaft[2] - start.displacements.shaft[2] > 1e-6);
@@ -219,9 +216,9 @@ fn a_spinning_ring_rests_in_its_static_expansion() {
 fn cyclic_sparse_and_sector_steps_agree() {
     for hold in [Hold::Clamped, Hold::MeanMotion] {
         let (mut model, start) = radial_step(1500.0, hold, false);
-        model.effects.push(Box::new(FrameRotation {
-            speeds: Speed::constant(1000.0).into(),
-        }));
+        model
+            .effects
+            .push(Box::new(FrameRotation::new(Speed::constant(1000.0))));
         let mut ends = Vec::new();
         let backends = [
             (Backend::Auto, "cyclic"),
@@ -324,17 +321,18 @@ fn a_ring_that_is_not_periodic_is_solved_as_a_whole_or_refused_with_the_reason()
 fn a_turning_ring_with_a_free_tilt_stays_in_its_equilibrium() {
     for (rpm, most, limit) in [(1800.0, 5e-5, 5e-5), (40e3, 2e-3, 4e-4)] {
         let speed = Speed::constant(rpm * std::f64::consts::PI / 30.0);
-        for has_frame in [false, true] {
+        for frame in [Frame::Still, Frame::Turning, Frame::Stiffened] {
             let case = Case {
                 radial: 1000.0,
                 free_tilt: true,
                 ..Case::axial(2000.0)
             };
             let mut model = case.flexible(ContactMode::Patch, Level::hex8(36, 6, 1, 2), Hold::Clamped);
-            if has_frame {
-                model.effects.push(Box::new(FrameRotation {
-                    speeds: speed.clone().into(),
-                }));
+            let turning = FrameRotation::new(speed.clone());
+            match frame {
+                Frame::Still => (),
+                Frame::Turning => model.effects.push(Box::new(turning)),
+                Frame::Stiffened => model.effects.push(Box::new(turning.stiffened())),
             }
             let start = equilibrium(&model);
             let [coarse, fine] = [100, 200].map(|steps| {
@@ -352,7 +350,7 @@ fn a_turning_ring_with_a_free_tilt_stays_in_its_equilibrium() {
                     mean / start.displacements.shaft[i] - 1.0
                 })
             });
-            println!("{rpm} rpm, frame {has_frame}: x, z and tilt off by {coarse:.6?} {fine:.6?}");
+            println!("{rpm} rpm, {frame:?} frame: x, z and tilt off by {coarse:.6?} {fine:.6?}");
             for (coarse, fine) in coarse.into_iter().zip(fine) {
                 assert!(coarse.abs() < most && fine.abs() < most, "{coarse} {fine}");
                 let left = 2.0 * fine - coarse;

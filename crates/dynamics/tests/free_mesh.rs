@@ -29,9 +29,9 @@ fn bearing() -> Model {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../meshes/7010c_inner_tet10.msh");
     let mesh = mesh::read_msh(path, 1e-3).unwrap();
     model.rings[0] = Some(Arc::new(ring_model(Side::Inner, mesh, Hold::Clamped)));
-    model.effects.push(Box::new(FrameRotation {
-        speeds: Speed::constant(SPEED).into(),
-    }));
+    model
+        .effects
+        .push(Box::new(FrameRotation::new(Speed::constant(SPEED))));
     model
 }
 

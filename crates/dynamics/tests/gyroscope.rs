@@ -8,6 +8,7 @@ use dynamics::kinematics::Speed;
 use dynamics::model::ShaftInertia;
 use dynamics::motion::{Motion, MotionSettings, MotionState, StepCache};
 use dynamics::{ContactMode, Hold, Model, ShaftDof};
+use ring::Frame;
 use support::Case;
 use support::rings::Level;
 
@@ -18,16 +19,16 @@ const TINY: Level = Level::hex8(18, 2, 1, 1);
 const RATE: f64 = 0.02;
 
 /// An inner ring alone: its shaft has no mass and moves freely, balls are out of reach.
-fn free_ring(level: Level, hold: Hold, speed: &Speed, has_frame: bool) -> Model {
+fn free_ring(level: Level, hold: Hold, speed: &Speed, frame: Frame) -> Model {
     let mut model = Case::axial(0.0).flexible(ContactMode::Patch, level, hold);
     model.rings[1] = None;
     model.geometry.outer_raceway_diameter += 0.1e-3;
-    model.effects.clear();
-    if has_frame {
-        model.effects = vec![Box::new(FrameRotation {
-            speeds: speed.clone().into(),
-        })];
-    }
+    let turning = || FrameRotation::new(speed.clone());
+    model.effects = match frame {
+        Frame::Still => Vec::new(),
+        Frame::Turning => vec![Box::new(turning())],
+        Frame::Stiffened => vec![Box::new(turning().stiffened())],
+    };
     model.shaft = [ShaftDof::Free; 5];
     model
 }
@@ -63,20 +64,23 @@ fn ratio(model: &Model) -> f64 {
 
 /// Wrong: the gyroscopic moment of a turning ring is missing or wrong, or the centrifugal force of its frame tilts it
 /// further. A free ring that gets a tilt rate w nutates on a circle of the radius w / l with l = W I_p / I (Euler): of
-/// second order in the step, from 1000 to 60 000 rpm, clamped or in its mean motion, with the inertia of the whole ring
-/// or of its rigid motion alone.
+/// second order in the step, from 1000 to 60 000 rpm, clamped or in its mean motion, with the inertia of the whole
+/// ring, stiffened by its stress or not, or of its rigid motion alone.
 #[test]
 fn a_free_ring_nutates_as_a_gyroscope() {
-    for (rpm, hold, has_frame) in [
-        (1e3, Hold::Clamped, false),
-        (18e3, Hold::Clamped, true),
-        (18e3, Hold::MeanMotion, false),
-        (18e3, Hold::MeanMotion, true),
-        (60e3, Hold::Clamped, false),
-        (60e3, Hold::Clamped, true),
+    for (rpm, hold, frame) in [
+        (1e3, Hold::Clamped, Frame::Still),
+        (18e3, Hold::Clamped, Frame::Turning),
+        (18e3, Hold::MeanMotion, Frame::Still),
+        (18e3, Hold::MeanMotion, Frame::Turning),
+        (60e3, Hold::Clamped, Frame::Still),
+        (60e3, Hold::Clamped, Frame::Turning),
+        (18e3, Hold::Clamped, Frame::Stiffened),
+        (60e3, Hold::Clamped, Frame::Stiffened),
+        (18e3, Hold::MeanMotion, Frame::Stiffened),
     ] {
         let speed = Speed::constant(rpm * std::f64::consts::PI / 30.0);
-        let model = free_ring(SMALL, hold, &speed, has_frame);
+        let model = free_ring(SMALL, hold, &speed, frame);
         let nutation = ratio(&model) * speed.at(0.0);
         let time = 2.0 / nutation;
         let error = |n: usize| {
@@ -88,7 +92,7 @@ fn a_free_ring_nutates_as_a_gyroscope() {
             (x - exact[0]).hypot(y - exact[1]) / radius
         };
         let (coarse, fine) = (error(20), error(40));
-        println!("{rpm} rpm, {hold:?}, frame {has_frame}: {coarse:.2e} {fine:.2e} of the radius");
+        println!("{rpm} rpm, {hold:?}, {frame:?} frame: {coarse:.2e} {fine:.2e} of the radius");
         assert!(coarse < 2e-3, "{coarse}");
         // What the ring's elasticity makes of forces on its bore is left at high speed.
         assert!(fine < 0.3 * coarse || fine < 2e-4, "{coarse} {fine}");
@@ -100,7 +104,7 @@ fn a_free_ring_nutates_as_a_gyroscope() {
 #[test]
 fn the_nutation_of_a_free_ring_does_not_grow() {
     let speed = Speed::constant(18e3 * std::f64::consts::PI / 30.0);
-    let model = free_ring(SMALL, Hold::Clamped, &speed, true);
+    let model = free_ring(SMALL, Hold::Clamped, &speed, Frame::Turning);
     let n = 3000;
     let radius = RATE / (ratio(&model) * speed.at(0.0));
     let largest = |states: &[MotionState]| {
@@ -158,7 +162,7 @@ fn rpm(speed: f64) -> Speed {
 #[ignore = "a million steps of a small ring: ten minutes; scripts/test-slow runs it"]
 fn the_nutation_of_a_free_ring_stays_for_a_million_steps() {
     let speed = rpm(60e3);
-    let model = free_ring(TINY, Hold::Clamped, &speed, true);
+    let model = free_ring(TINY, Hold::Clamped, &speed, Frame::Turning);
     let ratio = ratio(&model);
     flies_steadily(model, &speed, ratio, 1_000_000);
 }
@@ -178,7 +182,7 @@ fn the_nutation_of_a_rigid_shaft_stays_for_a_million_steps() {
 #[ignore = "half a million steps of a small ring: some minutes; scripts/test-slow runs it"]
 fn without_the_effect_the_nutation_stays_for_half_a_million_steps() {
     let speed = rpm(18e3);
-    let model = free_ring(TINY, Hold::Clamped, &speed, false);
+    let model = free_ring(TINY, Hold::Clamped, &speed, Frame::Still);
     let ratio = ratio(&model);
     flies_steadily(model, &speed, ratio, 500_000);
 }
@@ -189,9 +193,9 @@ fn without_the_effect_the_nutation_stays_for_half_a_million_steps() {
 #[test]
 fn without_the_effect_a_free_ring_leaves_its_place_slowly() {
     let (dt, n) = (1e-5, 4000);
-    let grown = |speed: f64, has_frame: bool| {
+    let grown = |speed: f64, frame: Frame| {
         let speed = rpm(speed);
-        let mut model = free_ring(TINY, Hold::Clamped, &speed, has_frame);
+        let mut model = free_ring(TINY, Hold::Clamped, &speed, frame);
         model.geometry.n_balls = 2;
         let motion = Motion::new(&model, MotionSettings::conserving(dt, speed)).unwrap();
         let back = model.geometry.ball_centre()[1] - model.geometry.groove_centre(Side::Inner)[1];
@@ -202,8 +206,8 @@ fn without_the_effect_a_free_ring_leaves_its_place_slowly() {
         }
         state.shaft[0].hypot(state.shaft[1]) / 1e-9
     };
-    let rate = |speed: f64| grown(speed, false).acosh() / (dt * f64::from(n));
-    let (fast, slow, with) = (rate(60e3), rate(42e3), grown(60e3, true));
+    let rate = |speed: f64| grown(speed, Frame::Still).acosh() / (dt * f64::from(n));
+    let (fast, slow, with) = (rate(60e3), rate(42e3), grown(60e3, Frame::Turning));
     println!("{fast:.2} / s, at 42 000 rpm {slow:.2} / s; with the effect {with:.4} of its place");
     assert!((24.0..28.0).contains(&fast), "{fast}");
     assert!((slow / fast / 0.7f64.powi(2) - 1.0).abs() < 0.02, "{slow} {fast}");
@@ -215,7 +219,7 @@ fn without_the_effect_a_free_ring_leaves_its_place_slowly() {
 #[test]
 fn a_free_ring_without_the_effect_flies_straight() {
     let speed = Speed::constant(18e3 * std::f64::consts::PI / 30.0);
-    let model = free_ring(SMALL, Hold::Clamped, &speed, false);
+    let model = free_ring(SMALL, Hold::Clamped, &speed, Frame::Still);
     let radius = 1e-3 * RATE / (ratio(&model) * speed.at(0.0));
     // Of second order in the angle of a step: 1.1 and 4.3 deg, 6 and 24 turns.
     for (dt, allowed) in [(1e-5, 0.003), (4e-5, 0.1)] {
@@ -235,7 +239,7 @@ fn a_free_ring_without_the_effect_flies_straight() {
 
 /// A shaft between rigid rings that touches nothing.
 fn rigid_shaft(speed: &Speed) -> Model {
-    let mut model = free_ring(SMALL, Hold::Clamped, speed, false);
+    let mut model = free_ring(SMALL, Hold::Clamped, speed, Frame::Still);
     model.rings = [None, None];
     model.shaft_mass = 0.8;
     model.shaft_inertia = ShaftInertia {
@@ -323,9 +327,7 @@ fn a_stiff_ring_moves_as_a_rigid_one() {
     let expected = run(&rigid);
     for has_frame in [false, true] {
         if has_frame {
-            stiff.effects.push(Box::new(FrameRotation {
-                speeds: speed.clone().into(),
-            }));
+            stiff.effects.push(Box::new(FrameRotation::new(speed.clone())));
         }
         let found = run(&stiff);
         let largest = |i: usize| expected.iter().map(|s| s.shaft[i].abs()).fold(0.0, f64::max);

@@ -291,9 +291,9 @@ fn a_motion_of_elastic_rings_turned_in_space_is_the_same_motion() {
     let model = |turn: Turn| {
         let bearing = Case::axial(0.0).flexible(ContactMode::Patch, Level::hex8(36, 6, 1, 2), Hold::Clamped);
         let mut model = turn.loaded(bearing);
-        model.effects.push(Box::new(FrameRotation {
-            speeds: Speed::constant(turn.sign() * SPEED).into(),
-        }));
+        model
+            .effects
+            .push(Box::new(FrameRotation::new(Speed::constant(turn.sign() * SPEED))));
         model
     };
     let start = Displacements {

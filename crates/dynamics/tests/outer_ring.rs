@@ -33,9 +33,7 @@ fn add_centrifugal(model: &mut Model, speeds: &RingSpeeds) {
 }
 
 fn add_frame(model: &mut Model, speeds: &RingSpeeds) {
-    model.effects.push(Box::new(FrameRotation {
-        speeds: speeds.clone(),
-    }));
+    model.effects.push(Box::new(FrameRotation::new(speeds.clone())));
 }
 
 fn run(model: &Model, start: &StaticSolution, speeds: &RingSpeeds, n: usize) -> Vec<MotionState> {

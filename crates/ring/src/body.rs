@@ -73,6 +73,8 @@ pub enum Frame {
     Still,
     /// It does.
     Turning,
+    /// It does, and the stress of the turning ring stiffens it ([`crate::expansion`]).
+    Stiffened,
 }
 
 /// A ring as it is held and damped.
@@ -137,7 +139,7 @@ pub trait ElasticBody: Send + Sync {
     /// The same at the chosen nodes, to the bit; others may be NaN.
     fn nodal_at(&self, x: &[f64], nodes: &[usize]) -> Vec<f64>;
 
-    /// a M b or a K b.
+    /// a A b of a matrix A; 0 with that of the stress where it does not stiffen the ring.
     fn form(&self, matrix: Matrix, a: &[f64], b: &[f64]) -> f64;
 
     /// Kinetic and strain energy, J.
@@ -341,7 +343,8 @@ impl dyn ElasticBody + '_ {
     }
 }
 
-/// Generalised inertia load of a turning frame, of coordinates, at displacement and velocity `w` and `v`.
+/// Generalised inertia load of a turning frame, of coordinates, at displacement and velocity `w` and `v`, less what the
+/// stress of the turning ring holds against `w`.
 pub(crate) fn frame_load(
     held: &HeldRing,
     matrices: &dyn NodalMatrices,
@@ -359,7 +362,13 @@ pub(crate) fn frame_load(
         f[0] = speed * speed * x + 2.0 * speed * vy + acceleration * y;
         f[1] = speed * speed * y - 2.0 * speed * vx - acceleration * x;
     }
-    held.coordinates.reduce(&matrices.nodal_mass_product(&field))
+    let mut load = matrices.nodal_mass_product(&field);
+    if let Some(stress) = matrices.nodal_stress_product(&u) {
+        load.iter_mut()
+            .zip(&stress)
+            .for_each(|(load, f)| *load -= speed * speed * f);
+    }
+    held.coordinates.reduce(&load)
 }
 
 /// Coordinates and mount of a held ring.

@@ -41,6 +41,17 @@ pub enum RingError {
         /// `inner` or `outer`.
         side: &'static str,
     },
+    /// A ring whose stress of turning does not stiffen it.
+    #[error(
+        "effects.frame_rotation.stress_stiffening is not there for the {side} ring: {reason}; \
+         remove it, or set it to false"
+    )]
+    NoStressStiffening {
+        /// `inner` or `outer`.
+        side: &'static str,
+        /// Why not.
+        reason: String,
+    },
     /// Another rank has failed.
     #[error("on rank {rank}: {message}")]
     OnRank {
@@ -86,6 +97,7 @@ impl RingError {
         matches!(
             self,
             RingError::NotHeld { .. }
+                | RingError::NoStressStiffening { .. }
                 | RingError::Fem { .. }
                 | RingError::Body { .. }
                 | RingError::Solver {

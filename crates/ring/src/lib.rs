@@ -8,6 +8,7 @@ pub mod body;
 pub mod coordinates;
 pub mod division;
 pub mod error;
+pub mod expansion;
 mod harmonic;
 mod inertia;
 pub mod integrator;

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use crate::body::{ElasticBody, Frame, Held, HeldRing, Partner};
 use crate::error::RingError;
+use crate::expansion::centrifugal_expansion;
 use crate::harmonic::make::harmonic_body;
 use crate::harmonic::periodic::Periodic;
 use crate::model::{Backend, RingModel};
@@ -11,6 +12,7 @@ use crate::mount::MountRows;
 use crate::nodal::sector::SectorBody;
 use crate::nodal::sparse::SparseBody;
 use crate::oscillators::Oscillators;
+use crate::statics::StaticSettings;
 use crate::tied::TiedRing;
 
 /// What a body is made with.
@@ -36,6 +38,7 @@ pub fn elastic_body(
         hold: ring.hold,
         partner: settings.partner,
     };
+    check_stiffening(name, ring, settings)?;
     let held = HeldRing {
         damping: settings.damping,
         ..HeldRing::new(name, ring, how, settings.backend)?
@@ -61,6 +64,20 @@ pub fn elastic_body(
     }
 }
 
+/// Refuses a ring that is not stiffened by the stress of its turning.
+fn check_stiffening(name: &'static str, ring: &RingModel, settings: BodySettings) -> Result<(), RingError> {
+    let reason = match (settings.frame, settings.backend) {
+        (Frame::Still | Frame::Turning, _) => return Ok(()),
+        (Frame::Stiffened, Backend::Sector(_)) => "solver.backend = \"sector\" cuts it into sectors",
+        (Frame::Stiffened, _) if ring.tie.is_some() => "it is tied to a body",
+        (Frame::Stiffened, _) => return Ok(()),
+    };
+    Err(RingError::NoStressStiffening {
+        side: name,
+        reason: reason.to_string(),
+    })
+}
+
 /// The body of a ring, held so, with the linear solver that fits it.
 fn solved_body(
     ring: &RingModel,
@@ -68,12 +85,26 @@ fn solved_body(
     settings: BodySettings,
 ) -> Result<Arc<dyn ElasticBody>, RingError> {
     let name = held.name;
+    let expansion = match settings.frame {
+        Frame::Stiffened => {
+            let BodySettings { partner, backend, .. } = settings;
+            let statics = StaticSettings {
+                name,
+                partner,
+                backend,
+                n_contacts: 1,
+            };
+            Some(centrifugal_expansion(ring, statics)?)
+        }
+        Frame::Still | Frame::Turning => None,
+    };
+    let expansion = expansion.as_deref();
     if let Backend::Sector(sectors) = settings.backend {
         return Ok(Arc::new(SectorBody::new(ring, held, sectors)?));
     }
     let held_nodes = held.coordinates.held_nodes();
     match Periodic::new(ring, name, settings.backend, &held_nodes)? {
-        Ok(periodic) => harmonic_body(ring, held, periodic, settings.frame),
-        Err(why) => Ok(Arc::new(SparseBody::new(ring, held, why)?)),
+        Ok(periodic) => harmonic_body(ring, held, periodic, (settings.frame, expansion)),
+        Err(why) => Ok(Arc::new(SparseBody::new(ring, held, why, expansion)?)),
     }
 }

@@ -36,6 +36,12 @@ pub trait NodalMatrices: Send + Sync {
     /// M of a nodal field, `[n_nodes][3]` flat.
     fn nodal_mass_product(&self, field: &[f64]) -> Vec<f64>;
 
+    /// Forces by the stress of a turning ring at unit speed, K_1 of a nodal field, N s^2, `[n_nodes][3]` flat; None
+    /// where that does not stiffen the ring.
+    fn nodal_stress_product(&self, _field: &[f64]) -> Option<Vec<f64>> {
+        None
+    }
+
     /// M x of coordinates, `[n]`.
     fn mass_product(&self, coordinates: &Coordinates, x: &[f64]) -> Vec<f64> {
         coordinates.reduce(&self.nodal_mass_product(&coordinates.expand(x)))
@@ -86,13 +92,15 @@ pub struct StateVectors<'a> {
     pub damped: Vec<f64>,
 }
 
-/// Which of the two matrices.
+/// Which of the matrices.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Matrix {
     /// M.
     Mass,
     /// K.
     Stiffness,
+    /// K_1, the stiffness by the stress of turning with unit speed, kg.
+    Stress,
 }
 
 /// Matrices of a ring that is not periodic, one each.
@@ -101,6 +109,8 @@ pub struct SparseMatrices {
     stiffness: CsMat<f64>,
     /// Mass between nodes.
     node_mass: CsMat<f64>,
+    /// K_1 between nodes, where the stress of turning stiffens the ring.
+    node_stress: Option<CsMat<f64>>,
 }
 
 /// Matrices of a periodic ring: blocks of one sector of the whole ring.
@@ -109,6 +119,8 @@ pub struct Stencils {
     pub stiffness: Box<CyclicStencil>,
     /// M.
     pub mass: Box<CyclicStencil>,
+    /// K_1, where the stress of turning stiffens the ring.
+    pub stress: Option<Box<CyclicStencil>>,
     /// What a defect adds.
     pub defect: Option<Box<RingDefect>>,
 }
@@ -127,6 +139,23 @@ impl SparseMatrices {
         Ok(SparseMatrices {
             stiffness: coordinates.reduce_matrix(&stiffness),
             node_mass: fem::assemble_node_mass(&pattern, mesh, &ring.material).map_err(fem_error)?,
+            node_stress: None,
+        })
+    }
+
+    /// The same with the stiffness by the stress of `expansion`, see [`crate::expansion`].
+    pub fn stiffened(
+        self,
+        ring: &RingModel,
+        side: &'static str,
+        expansion: &[f64],
+    ) -> Result<SparseMatrices, RingError> {
+        let fem_error = |source| RingError::Fem { side, source };
+        let pattern = fem::Pattern::new(&ring.mesh).map_err(fem_error)?;
+        let stress = fem::assemble_node_prestress(&pattern, &ring.mesh, &ring.material, expansion);
+        Ok(SparseMatrices {
+            node_stress: Some(stress.map_err(fem_error)?),
+            ..self
         })
     }
 
@@ -163,7 +192,11 @@ impl SparseMatrices {
 
 impl NodalMatrices for SparseMatrices {
     fn n_matrices(&self) -> usize {
-        2
+        2 + usize::from(self.node_stress.is_some())
+    }
+
+    fn nodal_stress_product(&self, field: &[f64]) -> Option<Vec<f64>> {
+        Some(node_product(self.node_stress.as_ref()?, field))
     }
 
     fn stiffness_product(&self, _: &Coordinates, x: &[f64]) -> Vec<f64> {
@@ -195,7 +228,11 @@ impl NodalMatrices for Substructures {
 
 impl NodalMatrices for Stencils {
     fn n_matrices(&self) -> usize {
-        2
+        2 + usize::from(self.stress.is_some())
+    }
+
+    fn nodal_stress_product(&self, field: &[f64]) -> Option<Vec<f64>> {
+        Some(self.stress.as_ref()?.apply(field))
     }
 
     fn stiffness_product(&self, coordinates: &Coordinates, x: &[f64]) -> Vec<f64> {
@@ -266,11 +303,28 @@ impl Nodes<'_> {
     /// Columns of c_M M + c_K K that belong to the shaft dofs: the rows of the free dofs, column-major, and those of
     /// the shaft, row-major.
     pub fn border(&self, [cm, ck]: [f64; 2]) -> [Vec<f64>; 2] {
+        self.border_of(|k| {
+            let [m, k] = [cm, ck].map(|c| self.unit(k, c));
+            self.matrices.sum_of_products(self.coordinates, &m, &k)
+        })
+    }
+
+    /// The same of K_1, which the ring must have.
+    pub fn stress_border(&self) -> [Vec<f64>; 2] {
+        self.border_of(|k| {
+            let field = self.coordinates.expand(&self.unit(k, 1.0));
+            let product = self.matrices.nodal_stress_product(&field);
+            self.coordinates
+                .reduce(&product.expect("the stress stiffens the ring"))
+        })
+    }
+
+    /// The border of a matrix by its columns of coordinates.
+    fn border_of(&self, column: impl Fn(usize) -> Vec<f64>) -> [Vec<f64>; 2] {
         let (n_free, n) = (self.coordinates.free().len(), self.coordinates.n());
         let (mut border, mut corner) = (Vec::new(), Vec::new());
         for k in n_free..n {
-            let [m, k] = [cm, ck].map(|c| self.unit(k, c));
-            let column = self.matrices.sum_of_products(self.coordinates, &m, &k);
+            let column = column(k);
             border.extend_from_slice(&column[..n_free]);
             corner.extend_from_slice(&column[n_free..]);
         }

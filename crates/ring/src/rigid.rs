@@ -4,8 +4,27 @@ pub use crate::inertia::{RigidInertia, across};
 
 use crate::body::ElasticBody;
 use crate::coordinates::RIGID_MOTIONS;
+use crate::matrices::Matrix;
 
 impl dyn ElasticBody + '_ {
+    /// What the stress of the ring, turning with unit speed, holds against a rigid tilt, N m s^2: R K_1 R, the mean of
+    /// both tilts about the centre of its groove circle. Of a ring that nothing holds it is half the polar moment of
+    /// inertia; a bore that is held pulls on the ring as well. Zero where the stress does not stiffen it.
+    pub fn tilt_by_stress(&self) -> f64 {
+        let still = vec![0.0; self.held().coordinates.expanded()];
+        let twice: f64 = [3, 4]
+            .map(|k| {
+                let mut q = [0.0; 5];
+                q[k] = 1.0;
+                let tilted = self.rigid_state((&still, None), [q, [0.0; 5]], 0.0);
+                let w = tilted.displacement();
+                self.form(Matrix::Stress, w, w)
+            })
+            .iter()
+            .sum();
+        0.5 * twice
+    }
+
     /// Inertia of the ring as a rigid body about the centre of its groove circle: of the mass matrix, with the means of
     /// x and y. Costs five products with that matrix. Collective.
     pub fn rigid_inertia(&self) -> RigidInertia {

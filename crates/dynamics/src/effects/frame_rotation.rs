@@ -11,28 +11,41 @@
 //! every step and are iterated there; S keeps its one factor. Statics takes the centrifugal and Euler forces of the
 //! undeformed rings: the rest is (W / first natural frequency)^2 of it.
 //!
+//! The stress of a turning ring stiffens it where the scene asks for it ([`ring::expansion`]). An equilibrium has no
+//! use of it: what stands in space runs round the turning ring, and the inertia of the ring in that motion takes back
+//! what the stress holds, rho W^2 r^2 in tension along the ring (that of a running chain, whatever its shape).
+//!
 //! Rule of thumb: growth u of the turning ring over the Hertz approach; u = rho omega^2 r^3 / E of a free ring, rho
 //! omega^2 r t^2 / (2 E) of one of thickness t on a solid shaft (Timoshenko, Strength of Materials II, thin turning
 //! ring).
 
 use contact::Side;
+use input::Problems;
 use serde::Deserialize;
 
 use super::loads::{FrameTurn, Loads, Now};
-use super::rules::{Case, judge, percent};
-use super::table::{self, About, Need, Setting, SpeedRole, Trial};
+use super::rules::{Case, judge, judge_key, percent};
+use super::table::{self, About, Context, Need, Setting, SpeedRole, Trial};
 use crate::error::DynamicsError;
 use crate::kinematics::RingSpeeds;
 use crate::model::{Effect, Model};
 use ring::Hold;
 use ring::division::body_load;
 
-const EXAMPLE: &str = "[effects.frame_rotation]        # needs [speed] and a flexible ring that turns\n";
+/// Share of a ball force that the oval shape of a bore in its mean motion makes: 4.3 % in the price list.
+const OVAL_SHARE: f64 = 0.04;
 
-/// The table of a scene: it has no keys.
+const EXAMPLE: &str = "[effects.frame_rotation]        # needs [speed] and a flexible ring that turns\n\
+stress_stiffening = true        # optional: their stress of turning stiffens them, in motion; default false\n";
+
+/// The table of a scene.
 #[derive(Clone, Debug, Deserialize, PartialEq)]
-#[serde(deny_unknown_fields, expecting = "the empty table [effects.frame_rotation]")]
-pub struct FrameRotationTable {}
+#[serde(deny_unknown_fields, expecting = "a table [effects.frame_rotation]")]
+pub struct FrameRotationTable {
+    /// Whether the stress of turning rings stiffens them.
+    #[serde(default)]
+    stress_stiffening: bool,
+}
 
 impl table::EffectTable for FrameRotationTable {
     fn about() -> About {
@@ -64,13 +77,71 @@ impl table::EffectTable for FrameRotationTable {
             percent(ratio),
             1e6 * approach
         );
-        judge("frame_rotation", table.is_some(), ratio, &estimate)
+        let mut advice = judge("frame_rotation", table.is_some(), ratio, &estimate);
+        advice.extend(stiffening_advice(table, case));
+        advice
     }
 
     fn load(&self, setting: Setting<'_>) -> Result<Option<Box<dyn Effect>>, DynamicsError> {
         let speeds = setting.speeds.clone();
-        Ok(Some(Box::new(FrameRotation { speeds })))
+        let plain = FrameRotation::new(speeds);
+        Ok(Some(Box::new(match self.stress_stiffening {
+            true => plain.stiffened(),
+            false => plain,
+        })))
     }
+
+    fn check(&self, context: Context, problems: &mut Problems) {
+        if self.stress_stiffening && context.is_without_inertia {
+            problems.add(
+                "effects.frame_rotation.stress_stiffening does nothing in a scene without inertia: a shape that stands \
+                 in space runs round the turning ring, whose inertia takes back what its stress holds; remove it, or \
+                 compute motion with [dynamic]",
+            );
+        }
+    }
+}
+
+/// What the rule of thumb says of the stiffness by the stress of turning rings.
+fn stiffening_advice(table: Option<&FrameRotationTable>, case: &Case<'_>) -> Vec<String> {
+    let is_on = table.is_some_and(|table| table.stress_stiffening);
+    if !case.has_inertia {
+        return Vec::new();
+    }
+    let shares = Side::BOTH
+        .into_iter()
+        .filter_map(|side| Some((side, stiffening(case, side)?)));
+    let Some((side, share)) = shares.reduce(|a, b| if b.1 > a.1 { b } else { a }) else {
+        return Vec::new();
+    };
+    let ratio = OVAL_SHARE * share;
+    let estimate = format!(
+        "the stress of the turning {} ring holds 3 rho omega^2 r^4 / (E h^2) = {} of what bends it oval, about {} of \
+         a ball force",
+        side.name(),
+        percent(share),
+        percent(ratio)
+    );
+    judge_key(
+        "effects.frame_rotation.stress_stiffening",
+        is_on,
+        ratio,
+        &estimate,
+    )
+}
+
+/// Share that the stress of a flexible ring at its largest speed adds to its stiffness against an oval shape; of one
+/// that is clamped, as good as nothing.
+fn stiffening(case: &Case<'_>, side: Side) -> Option<f64> {
+    let ring = case.model.ring(side)?;
+    let (groove, held) = case.radii(side);
+    let (radius, height) = (0.5 * (groove + held), (groove - held).abs());
+    let speed = case.speed(side);
+    let strain = case.ring_steel.density * (speed * radius).powi(2) / case.ring_steel.young_modulus;
+    Some(match ring.hold {
+        Hold::Clamped => 0.0,
+        Hold::MeanMotion | Hold::Free => 3.0 * strain * (radius / height).powi(2),
+    })
 }
 
 /// Growth of the raceway of a flexible ring at its largest speed, m, and its formula.
@@ -90,8 +161,27 @@ fn growth(case: &Case<'_>, side: Side) -> Option<(f64, &'static str)> {
 
 /// Inertia of the turning frames of flexible rings.
 pub struct FrameRotation {
-    /// Speeds of the rings.
-    pub speeds: RingSpeeds,
+    speeds: RingSpeeds,
+    /// Whether the stress of the rings stiffens them.
+    stiffens: bool,
+}
+
+impl FrameRotation {
+    /// That of rings with these speeds, which their stress does not stiffen.
+    pub fn new(speeds: impl Into<RingSpeeds>) -> FrameRotation {
+        FrameRotation {
+            speeds: speeds.into(),
+            stiffens: false,
+        }
+    }
+
+    /// The same of rings that the stress of their turning stiffens ([`ring::expansion`]).
+    pub fn stiffened(self) -> FrameRotation {
+        FrameRotation {
+            stiffens: true,
+            ..self
+        }
+    }
 }
 
 impl Effect for FrameRotation {
@@ -101,6 +191,10 @@ impl Effect for FrameRotation {
 
     fn turns_frame(&self, side: Side) -> bool {
         !self.speeds.of(side).is_zero()
+    }
+
+    fn stiffens(&self, side: Side) -> bool {
+        self.stiffens && self.turns_frame(side)
     }
 
     fn add_loads(&self, model: &Model, now: &Now, loads: &mut Loads) -> Result<(), DynamicsError> {

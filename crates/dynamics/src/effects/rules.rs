@@ -135,13 +135,16 @@ impl Case<'_> {
 
 /// Says that an effect is off and matters, or on and does not.
 pub fn judge(name: &str, is_on: bool, ratio: f64, estimate: &str) -> Vec<String> {
+    judge_key(&format!("[effects.{name}]"), is_on, ratio, estimate)
+}
+
+/// The same of what a key of a scene turns on.
+pub fn judge_key(key: &str, is_on: bool, ratio: f64, estimate: &str) -> Vec<String> {
     if !is_on && ratio >= MATTERS {
-        return vec![format!("[effects.{name}] is off, but {estimate}")];
+        return vec![format!("{key} is off, but {estimate}")];
     }
     if is_on && ratio < NEGLIGIBLE {
-        return vec![format!(
-            "[effects.{name}] is on, but {estimate}: it could be left off"
-        )];
+        return vec![format!("{key} is on, but {estimate}: it could be left off")];
     }
     Vec::new()
 }

@@ -45,6 +45,8 @@ pub struct Motion<'a> {
     /// Rigid inertia of a flexible inner ring, zero of a rigid one, where ring or shaft turns and may move across its
     /// axis.
     pub(super) turning: Option<RigidInertia>,
+    /// Moment that the stress of the inner ring at unit speed holds against a tilt, N m s^2.
+    pub(super) tilt_by_stress: f64,
     /// Tells this motion from others.
     pub(super) token: Arc<()>,
     rungs: Vec<OnceLock<Rung>>,
@@ -57,20 +59,13 @@ impl<'a> Motion<'a> {
     pub fn new(model: &'a Model, settings: MotionSettings) -> Result<Motion<'a>, DynamicsError> {
         check_supported(model)?;
         check_free(model, &settings)?;
-        let frame = |side: Side| {
-            if model.turns_frame(side) {
-                Frame::Turning
-            } else {
-                Frame::Still
-            }
-        };
         let build = |side: Side| {
             let moving = |ring| -> Result<MovingRing, DynamicsError> {
                 let settings = BodySettings {
                     partner: partner(model, side),
                     damping: settings.rayleigh,
                     backend: model.backend,
-                    frame: frame(side),
+                    frame: model.frame(side),
                 };
                 Ok(MovingRing {
                     body: elastic_body(side.name(), ring, settings)?,
@@ -86,6 +81,11 @@ impl<'a> Motion<'a> {
             let ring = inner.as_ref().filter(on_shaft);
             ring.map(|ring| ring.body.rigid_inertia()).unwrap_or_default()
         });
+        let [frame, _] = Side::BOTH.map(|side| model.frame(side));
+        let tilt_by_stress = match frame {
+            Frame::Stiffened => inner.as_ref().map_or(0.0, |ring| ring.body.tilt_by_stress()),
+            Frame::Still | Frame::Turning => 0.0,
+        };
         let kinematics = Kinematics::new(&model.geometry, settings.slip);
         let rungs = (0..=settings.ladder.halvings).map(|_| OnceLock::new()).collect();
         let motion = Motion {
@@ -93,6 +93,7 @@ impl<'a> Motion<'a> {
             kinematics,
             rings: [inner, outer],
             turning,
+            tilt_by_stress,
             settings,
             token: Arc::new(()),
             rungs,

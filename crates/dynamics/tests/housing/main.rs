@@ -16,6 +16,7 @@ use dynamics::{Backend, ContactMode, Hold, Model, RingModel, StaticSolution};
 use fem::Material;
 use mesh::{Facet, Mesh, Origin};
 use ring::statics::RingSolver;
+use ring::{BodySettings, Frame, Partner, elastic_body};
 use support::rings::{Level, ring};
 use support::{Case, equilibrium, on_threads, steel};
 
@@ -80,6 +81,27 @@ fn the_six_rigid_functions_on_a_rigid_body_are_the_mean_motion() {
     let expected = solver(&held).solve(load.clone(), 1);
     let off = difference(&solver(&tied).solve(load, 1), &expected);
     assert!(off < 1e-12, "{off:e}");
+}
+
+/// Wrong: a ring that turns with the body round it would move as if its stress were that of a ring alone.
+#[test]
+fn a_tied_ring_is_not_stiffened_by_its_stress() {
+    let tied = tied(SeatTie::to_rigid(space(
+        &outer(Hold::MeanMotion),
+        SeatBasis::Rigid,
+    )));
+    let settings = BodySettings {
+        partner: Partner::AT_REST,
+        damping: [0.0; 2],
+        backend: Backend::Auto,
+        frame: Frame::Stiffened,
+    };
+    let error = elastic_body("outer", &tied, settings).err().unwrap();
+    assert_eq!(
+        error.to_string(),
+        "effects.frame_rotation.stress_stiffening is not there for the outer ring: it is tied to a body; remove it, \
+         or set it to false"
+    );
 }
 
 /// Wrong: more functions on a rigid body would not come to a clamped seat.

@@ -59,9 +59,9 @@ fn a_step_from_its_state_alone_has_the_same_bits() {
         let mut model = bearing(HEX8, hold, backend);
         let gravity = Gravity::new([0.0, -9.81, 0.0], Schedule::Constant, &model.rings).unwrap();
         model.effects.push(Box::new(gravity));
-        model.effects.push(Box::new(FrameRotation {
-            speeds: settings.speeds.clone(),
-        }));
+        model
+            .effects
+            .push(Box::new(FrameRotation::new(settings.speeds.clone())));
         let start = statics(&model, name);
         let motion = Motion::new(&model, settings).unwrap();
         let mut state = motion.start(&start);

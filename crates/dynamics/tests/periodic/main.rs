@@ -181,9 +181,9 @@ fn rolling(level: Level, backend: Backend, steps: usize) -> End {
 /// The same of a model.
 fn motion(build: impl Fn() -> Model, steps: usize) -> End {
     let mut model = build();
-    model.effects.push(Box::new(FrameRotation {
-        speeds: Speed::constant(SPEED).into(),
-    }));
+    model
+        .effects
+        .push(Box::new(FrameRotation::new(Speed::constant(SPEED))));
     motion_of(&model, &build(), steps)
 }
 

@@ -224,9 +224,7 @@ fn a_step_of_rings_with_a_keyway_has_the_same_bits_from_its_state_alone() {
         ),
     ] {
         let mut model = with_meshes(HEX8, hold, Backend::Auto, keyway);
-        model.effects.push(Box::new(FrameRotation {
-            speeds: speed.clone().into(),
-        }));
+        model.effects.push(Box::new(FrameRotation::new(speed.clone())));
         let gravity = Gravity::new([0.0, -9.81, 0.0], Schedule::Constant, &model.rings).unwrap();
         model.effects.push(Box::new(gravity));
         let settings = MotionSettings {
@@ -248,6 +246,24 @@ fn a_step_of_rings_with_a_keyway_has_the_same_bits_from_its_state_alone() {
         println!("{hold:?}: {:.1e}", state.ledger.relative_defect());
         assert!(state.ledger.relative_defect().abs() < 1e-9, "{:?}", state.ledger);
     }
+}
+
+/// Wrong: a ring with a keyway would be stiffened as if it had none, or not at all without a word.
+#[test]
+fn a_ring_with_a_keyway_is_not_stiffened_by_its_stress() {
+    let speed = Speed::constant(SPEED);
+    let mut model = keyed(HEX8, Hold::Clamped, Backend::Auto);
+    model
+        .effects
+        .push(Box::new(FrameRotation::new(speed.clone()).stiffened()));
+    let error = Motion::new(&model, MotionSettings::conserving(1e-5, speed))
+        .err()
+        .unwrap();
+    assert_eq!(
+        error.to_string(),
+        "effects.frame_rotation.stress_stiffening is not there for the inner ring: it is rotationally periodic only up \
+         to a defect; remove it, or set it to false"
+    );
 }
 
 /// Wrong: the keyway would not matter in these tests, or the log would not say what and where it is.

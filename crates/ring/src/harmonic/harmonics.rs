@@ -87,6 +87,7 @@ impl Harmonics {
             Ok(Stencils {
                 stiffness: operator(&whole.stiffness)?,
                 mass: operator(&whole.mass)?,
+                stress: whole.stress.as_ref().map(operator).transpose()?,
                 defect,
             })
         };

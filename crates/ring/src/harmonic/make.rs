@@ -12,14 +12,18 @@ use crate::error::RingError;
 use crate::model::RingModel;
 use crate::nodal::columns::NodalBody;
 
-/// The body of a ring that harmonics solve.
+/// The body of a ring that harmonics solve, stiffened by the stress of an expansion.
 pub(crate) fn harmonic_body(
     ring: &RingModel,
     held: HeldRing,
     periodic: Periodic,
-    frame: Frame,
+    (frame, expansion): (Frame, Option<&[f64]>),
 ) -> Result<Arc<dyn ElasticBody>, RingError> {
     let name = held.name;
+    let periodic = match expansion {
+        Some(expansion) => periodic.stiffened(ring, name, &held.coordinates.held_nodes(), expansion)?,
+        None => periodic,
+    };
     let (harmonics, stencils) = Harmonics::new(ring, &held, periodic)?;
     let own = held.nodes(&stencils);
     let space = match &harmonics.defect {
@@ -34,7 +38,7 @@ pub(crate) fn harmonic_body(
             Some(defect) => {
                 let regular = change.nodes();
                 let defect = match frame {
-                    Frame::Turning => defect.turning(own, regular, change.changes.rows()),
+                    Frame::Turning | Frame::Stiffened => defect.turning(own, regular, change.changes.rows()),
                     Frame::Still => defect,
                 };
                 HarmonicSpace::new(&harmonics.held, regular, Some(defect))

@@ -28,6 +28,8 @@ pub struct PeriodicSectors {
     pub stiffness: CyclicMatrix,
     /// Mass.
     pub mass: CyclicMatrix,
+    /// Stiffness by the stress of turning with unit speed, where that stiffens the ring.
+    pub stress: Option<CyclicMatrix>,
 }
 
 /// A ring without its held nodes.
@@ -187,6 +189,45 @@ impl Periodic {
         }))
     }
 
+    /// The same ring, with the nodes `held` of the mesh held, stiffened by the stress of an `expansion`, see
+    /// [`crate::expansion`].
+    pub fn stiffened(
+        mut self,
+        ring: &RingModel,
+        side: &'static str,
+        held: &[usize],
+        expansion: &[f64],
+    ) -> Result<Periodic, RingError> {
+        let refuse = |reason: &str| {
+            Err(RingError::NoStressStiffening {
+                side,
+                reason: reason.to_string(),
+            })
+        };
+        if self.defect.is_some() {
+            return refuse("it is rotationally periodic only up to a defect");
+        }
+        let periodicity = match ring.periodicity() {
+            Ok(periodicity) => periodicity,
+            Err(_) => return refuse("its sectors are equal but for groups of facets"),
+        };
+        let of_sector = fem::assemble_sector_prestress(&ring.mesh, periodicity, &ring.material, expansion)
+            .map_err(|source| RingError::Fem { side, source })?;
+        let whole = &mut self.whole;
+        let stress = whole
+            .stiffness
+            .with_blocks(&couplings(&of_sector.couplings), &of_sector.blocks)
+            .map_err(|source| RingError::Solver { side, source })?;
+        let held = periodicity.section_nodes(held);
+        let keep = kept(
+            periodicity,
+            &held.expect("what holds it is the same in all sectors"),
+        );
+        self.held.sectors.stress = Some(stress.restricted(&keep));
+        whole.stress = Some(stress);
+        Ok(self)
+    }
+
     /// The whole ring for nodal vectors of `mesh`, which may lack nodes of the regular one.
     pub fn whole_ring(&self, mesh: &Mesh) -> CyclicRing {
         match &self.defect {
@@ -281,6 +322,7 @@ impl PeriodicSectors {
                 ring,
                 stiffness,
                 mass,
+                stress: None,
             })
         };
         build().map_err(|source| RingError::Solver { side, source })
@@ -294,9 +336,7 @@ impl PeriodicSectors {
         [held, raceway]: [&[usize]; 2],
         side: &'static str,
     ) -> Result<Result<HeldSectors, String>, RingError> {
-        let keep: Vec<usize> = (0..periodicity.n_section_nodes())
-            .filter(|i| held.binary_search(i).is_err())
-            .collect();
+        let keep = kept(periodicity, held);
         let places = raceway.iter().map(|n| keep.binary_search(n).ok());
         let Some(raceway): Option<Vec<usize>> = places.collect() else {
             return Ok(Err("its raceway touches what is held".to_string()));
@@ -311,6 +351,7 @@ impl PeriodicSectors {
                 ring: restricted,
                 stiffness,
                 mass,
+                stress: None,
             },
             raceway,
             seen: None,
@@ -331,6 +372,13 @@ impl HeldSectors {
         // The table, and the spectra that it is made from.
         2 * size_of::<f64>() * periodicity.n_sectors() * n * n
     }
+}
+
+/// Section nodes that are not among the `held` ones, ascending.
+fn kept(periodicity: &Periodicity, held: &[usize]) -> Vec<usize> {
+    (0..periodicity.n_section_nodes())
+        .filter(|i| held.binary_search(i).is_err())
+        .collect()
 }
 
 /// Section nodes of a raceway, those in the plane of the section first, along the groove: so that a patch is on

@@ -29,6 +29,8 @@ pub(crate) struct HarmonicSpace {
     pub(super) mass: HarmonicOperator,
     /// K.
     pub(super) stiffness: HarmonicOperator,
+    /// K_1, where the stress of turning stiffens the ring.
+    stress: Option<HarmonicOperator>,
     /// A defect, of whose regular ring the matrices are.
     pub(super) defect: Option<SpaceDefect>,
     /// What strains nothing.
@@ -76,19 +78,21 @@ impl HarmonicSpace {
         defect: Option<SpaceDefect>,
     ) -> Result<HarmonicSpace, SolverError> {
         let free = &held.sectors;
-        let operator = |matrix, coefficients| {
-            let [border, corner] = nodes.border(coefficients);
+        let operator = |matrix, [border, corner]: [Vec<f64>; 2]| {
             HarmonicOperator::new(&free.ring, matrix, &border, &corner)
         };
         let n_shaft = nodes.coordinates.shaft().0.len();
-        let stiffness = operator(&free.stiffness, [0.0, 1.0])?;
+        let stiffness = operator(&free.stiffness, nodes.border([0.0, 1.0]))?;
+        let stress = free.stress.as_ref();
+        let stress = stress.map(|stress| operator(stress, nodes.stress_border()));
         let of_rigid = defect.as_ref().map_or(&free.ring, SpaceDefect::regular);
         Ok(HarmonicSpace {
             rigid: RigidMotions::new(of_rigid, nodes, &stiffness, defect.as_ref()),
             pool: VectorPool::new(free.ring.harmonic_len() + n_shaft),
             n_shaft,
-            mass: operator(&free.mass, [1.0, 0.0])?,
+            mass: operator(&free.mass, nodes.border([1.0, 0.0]))?,
             stiffness,
+            stress: stress.transpose()?,
             ring: match &held.seen {
                 Some(seen) => free.ring.seen_at(seen),
                 None => free.ring.clone(),
@@ -172,12 +176,14 @@ impl HarmonicSpace {
         x[self.ring.harmonic_len()..].copy_from_slice(border);
     }
 
-    /// a M b or a K b.
+    /// a A b of a matrix A, 0 with one that the ring lacks.
     pub(super) fn form(&self, matrix: Matrix, a: &[f64], b: &[f64]) -> f64 {
         let operator = match matrix {
-            Matrix::Mass => &self.mass,
-            Matrix::Stiffness => &self.stiffness,
+            Matrix::Mass => Some(&self.mass),
+            Matrix::Stiffness => Some(&self.stiffness),
+            Matrix::Stress => self.stress.as_ref(),
         };
+        let Some(operator) = operator else { return 0.0 };
         let (product, len) = (operator.product(b), self.ring.harmonic_len());
         let regular = self.ring.harmonic_dot(&a[..len], &product[..len]) + dot(&a[len..], &product[len..]);
         let of_defect = |defect: &SpaceDefect| {
@@ -192,7 +198,7 @@ impl HarmonicSpace {
         self.frame.get_or_init(|| self.frame_loads(nodes))
     }
 
-    /// One group of the generalised inertia load of the turning frame, see [`crate::body::frame_load`]. `motion` gives
+    /// One group of the generalised load of the turning frame, see [`crate::body::frame_load`]. `motion` gives
     /// displacement and velocity of the numbers of the group from the first one on; `field` is overwritten.
     pub(super) fn frame_part(
         &self,
@@ -214,6 +220,13 @@ impl HarmonicSpace {
         }
         rows.fill(0.0);
         self.mass.group_product(group, field, load);
+        if let Some(stress) = &self.stress {
+            self.displacement_part(&motion, field);
+            let mut held = vec![0.0; field.len()];
+            stress.group_product(group, field, &mut held);
+            let terms = load.iter_mut().zip(&held);
+            terms.for_each(|(load, held)| *load -= speed * speed * held);
+        }
         if group > 0 {
             return;
         }
@@ -229,6 +242,21 @@ impl HarmonicSpace {
                 [speed * speed * q, acceleration * q + 2.0 * speed * rate],
                 of_shaft,
             );
+        }
+    }
+
+    /// Overwrites `field` with the displacement of one group, of the first with the rows of the border.
+    fn displacement_part(&self, motion: &impl Fn(usize, [&mut [f64]; 2]), field: &mut [f64]) {
+        let low = self.ring.low_len();
+        let (harmonics, rows) = field.split_at_mut(low);
+        for (node, field) in harmonics.as_chunks_mut().0.iter_mut().enumerate() {
+            let [mut w, mut v] = [[0.0; NODE_LEN]; 2];
+            motion(NODE_LEN * node, [&mut w, &mut v]);
+            *field = w;
+        }
+        if !rows.is_empty() {
+            let mut rates = vec![0.0; rows.len()];
+            motion(low, [rows, &mut rates]);
         }
     }
 

@@ -67,6 +67,10 @@ impl<S: NodalSolver> ElasticBody for NodalBody<S> {
         match matrix {
             Matrix::Mass => dot(a, &matrices.mass_product(coordinates, b)),
             Matrix::Stiffness => dot(a, &matrices.stiffness_product(coordinates, b)),
+            Matrix::Stress => {
+                let product = matrices.nodal_stress_product(&coordinates.expand(b));
+                product.map_or(0.0, |product| dot(a, &coordinates.reduce(&product)))
+            }
         }
     }
 

@@ -40,9 +40,19 @@ pub struct HalfSolved {
 }
 
 impl SparseBody {
-    /// Assembles and analyses a held ring that is not solved by harmonics, with the reason.
-    pub fn new(ring: &RingModel, held: HeldRing, why: String) -> Result<SparseBody, RingError> {
+    /// Assembles and analyses a held ring that is not solved by harmonics, with the reason, stiffened by the stress of
+    /// an `expansion`.
+    pub fn new(
+        ring: &RingModel,
+        held: HeldRing,
+        why: String,
+        expansion: Option<&[f64]>,
+    ) -> Result<SparseBody, RingError> {
         let matrices = SparseMatrices::new(ring, held.name, &held.coordinates)?;
+        let matrices = match expansion {
+            Some(expansion) => matrices.stiffened(ring, held.name, expansion)?,
+            None => matrices,
+        };
         let symbolic = matrices
             .analyse(ring, &held.coordinates)
             .map_err(|source| RingError::Solver {

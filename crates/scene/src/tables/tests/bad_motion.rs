@@ -397,6 +397,10 @@ fn effects_without_anything_to_do_are_refused() {
         let text = replace_line(text, "[speed]", "");
         replace_line(&text, "inner = \"1800 rpm\"", "")
     };
+    let stiffened = turning.replace(
+        "[effects.frame_rotation]",
+        "[effects.frame_rotation]\nstress_stiffening = true",
+    );
     let no_slip = |text: &str| {
         let (head, tail) = text.split_once("[effects.cage_slip]").unwrap();
         format!("{head}{}", &tail[tail.find("\n[").unwrap()..])
@@ -428,6 +432,13 @@ fn effects_without_anything_to_do_are_refused() {
             turning.replace("mesh = \"../meshes/7010c_inner.msh\"", "flexible = false"),
             "[effects.frame_rotation] is the inertia of a flexible ring that turns, but the inner ring is rigid; \
              remove it"
+                .to_string(),
+        ),
+        (
+            stiffened,
+            "effects.frame_rotation.stress_stiffening does nothing in a scene without inertia: a shape that stands in \
+             space runs round the turning ring, whose inertia takes back what its stress holds; remove it, or compute \
+             motion with [dynamic]"
                 .to_string(),
         ),
         (
