@@ -69,12 +69,7 @@ impl StepSolution {
 }
 
 impl BearingParts {
-    /// Solves the part; `scale` is the largest force that acts at its start, N.
-    pub fn solve_step(&self, scale: f64, costs: &SharedLaps) -> Result<StepSolution, DynamicsError> {
-        self.solve_step_from(None, &policy(scale, None, costs), &mut None)
-    }
-
-    /// The same by a policy, from given unknowns or from the guess of the system, and with a tangent that is kept.
+    /// Solves the part by a policy, from given unknowns or from the guess of the system, with a tangent that is kept.
     pub(super) fn solve_step_from(
         &self,
         start: Option<Vec<f64>>,

@@ -89,6 +89,12 @@ pub struct NewtonSolution {
     pub iterations: usize,
 }
 
+impl NewtonSolution {
+    fn new(unknowns: Vec<f64>, iterations: usize) -> NewtonSolution {
+        NewtonSolution { unknowns, iterations }
+    }
+}
+
 impl System<'_> {
     /// Solves the system from the unknowns `x`. Fails with the residual history and the place of the largest residual.
     pub fn solve(&self, x: Vec<f64>, policy: &Policy) -> Result<NewtonSolution, DynamicsError> {
@@ -118,6 +124,9 @@ impl System<'_> {
             best = best.min(now);
             let scale = force_scale(&at.links, policy.force_scale);
             limit = policy.residual_limit * scale;
+            if now <= RESIDUAL_TARGET * scale {
+                return Ok(NewtonSolution::new(x, iteration));
+            }
             let mut tangent = match kept.take() {
                 Some(earlier) if policy.keeps_factors && is_fast => earlier,
                 _ => self.tangent(&x, &at, &mut bodies),
@@ -130,10 +139,9 @@ impl System<'_> {
             let places = || policy.ends_at_floor && now <= self.round_off(&x);
             let is_at_floor = policy.ends_at_floor && now <= floor() || now <= limit && places();
             let is_floor = || now <= limit.max(floor()) || places();
-            if now <= RESIDUAL_TARGET * scale || (stalled >= 2 && is_floor()) {
-                let (unknowns, iterations) = (x, iteration);
+            if stalled >= 2 && is_floor() {
                 *kept = Some(tangent);
-                return Ok(NewtonSolution { unknowns, iterations });
+                return Ok(NewtonSolution::new(x, iteration));
             }
             let factors = match tangent.factors.take() {
                 Some(factors) => factors,
@@ -145,8 +153,7 @@ impl System<'_> {
             if is_at_floor {
                 // Light bodies beside heavy ones gain by the last step; its residual is round-off of the heavy ones.
                 x.iter_mut().zip(&step).for_each(|(x, s)| *x += s);
-                let (unknowns, iterations) = (x, iteration + 1);
-                return Ok(NewtonSolution { unknowns, iterations });
+                return Ok(NewtonSolution::new(x, iteration + 1));
             }
             (x, at) = self.search(x, at, &step, policy);
             (policy.watch)(&x)?;
