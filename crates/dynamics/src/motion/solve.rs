@@ -69,7 +69,12 @@ impl StepSolution {
 }
 
 impl BearingParts {
-    /// Solves the part by a policy, from given unknowns or from the guess of the system, with a tangent that is kept.
+    /// Solves the part; `scale` is the largest force that acts at its start, N.
+    pub fn solve_step(&self, scale: f64, costs: &SharedLaps) -> Result<StepSolution, DynamicsError> {
+        self.solve_step_from(None, &policy(scale, None, costs), &mut None)
+    }
+
+    /// The same by a policy, from given unknowns or from the guess of the system, with a tangent that is kept.
     pub(super) fn solve_step_from(
         &self,
         start: Option<Vec<f64>>,
@@ -81,11 +86,7 @@ impl BearingParts {
         let (x, reaches) = (&solved.unknowns, self.reaches(&solved.unknowns));
         let means = self.contacts.means;
         let balls = means.map(|means| self.contacts.mean_forces(lengths(&reaches), means, costs));
-        let forces: Vec<MeanForce> = balls
-            .into_iter()
-            .flatten()
-            .flat_map(|ball| ball.contacts)
-            .collect();
+        let forces: Vec<_> = balls.iter().flatten().flat_map(|b| b.contacts).collect();
         let on_shaft = system.forces_on(SHAFT, CONTACTS, x, &self.with_dead(&forces));
         Ok(StepSolution {
             shaft: system.coordinates(SHAFT, x),

@@ -89,12 +89,6 @@ pub struct NewtonSolution {
     pub iterations: usize,
 }
 
-impl NewtonSolution {
-    fn new(unknowns: Vec<f64>, iterations: usize) -> NewtonSolution {
-        NewtonSolution { unknowns, iterations }
-    }
-}
-
 impl System<'_> {
     /// Solves the system from the unknowns `x`. Fails with the residual history and the place of the largest residual.
     pub fn solve(&self, x: Vec<f64>, policy: &Policy) -> Result<NewtonSolution, DynamicsError> {
@@ -108,12 +102,13 @@ impl System<'_> {
         policy: &Policy,
         kept: &mut Option<KeptTangent>,
     ) -> Result<NewtonSolution, DynamicsError> {
+        let done = |unknowns, iterations| Ok(NewtonSolution { unknowns, iterations });
         let (mut history, mut best, mut stalled) = (Vec::new(), f64::INFINITY, 0);
         let mut at = self.evaluate(&x, policy.costs);
         let (mut worst, mut limit, mut bodies) = (0, 0.0, Vec::new());
         for iteration in 0..policy.most_iterations {
-            let (place, now) = largest(&policy.scaled(&at.residual));
-            worst = place;
+            let now;
+            (worst, now) = largest(&policy.scaled(&at.residual));
             if !now.is_finite() {
                 let what = "a contact force";
                 return Err(DynamicsError::NotFinite { what });
@@ -125,7 +120,7 @@ impl System<'_> {
             let scale = force_scale(&at.links, policy.force_scale);
             limit = policy.residual_limit * scale;
             if now <= RESIDUAL_TARGET * scale {
-                return Ok(NewtonSolution::new(x, iteration));
+                return done(x, iteration);
             }
             let mut tangent = match kept.take() {
                 Some(earlier) if policy.keeps_factors && is_fast => earlier,
@@ -141,7 +136,7 @@ impl System<'_> {
             let is_floor = || now <= limit.max(floor()) || places();
             if stalled >= 2 && is_floor() {
                 *kept = Some(tangent);
-                return Ok(NewtonSolution::new(x, iteration));
+                return done(x, iteration);
             }
             let factors = match tangent.factors.take() {
                 Some(factors) => factors,
@@ -153,7 +148,7 @@ impl System<'_> {
             if is_at_floor {
                 // Light bodies beside heavy ones gain by the last step; its residual is round-off of the heavy ones.
                 x.iter_mut().zip(&step).for_each(|(x, s)| *x += s);
-                return Ok(NewtonSolution::new(x, iteration + 1));
+                return done(x, iteration + 1);
             }
             (x, at) = self.search(x, at, &step, policy);
             (policy.watch)(&x)?;
