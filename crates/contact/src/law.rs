@@ -10,10 +10,12 @@
 //! Energy: V(g) = 2/5 K d_e^2.5 - (c_s + c_b) Q^2 / 2, dV/dg = Q.
 //!
 //! **Both contacts of a ball.** Each yields by x times the force of the other ([`crate::sphere`]): g_i = h_i(Q_i) +
-//! x Q_o, g_o = h_o(Q_o) + x Q_i. The forces are those of the law at g_i - x Q_o and g_o - x Q_i, found in turns that
-//! contract by x^2 dQ_i/dg dQ_o/dg, 3e-4 under 330 N. They are the gradient of V_i + V_o + x Q_i Q_o, convex where that
-//! product is below 1: the Hessian of the complementary energy, ((dh_i, x), (x, dh_o)), is positive definite then. Far
-//! beyond any load a law is continued as a straight line, so that the product is at most 1/4.
+//! x Q_o, g_o = h_o(Q_o) + x Q_i. The forces are those of the law at g_i - x Q_o and g_o - x Q_i, found by Newton's
+//! iteration on the roots of both Hertz approaches. Where that leaves the range of the law or finds a contact open,
+//! they are found in turns, which contract by x^2 dQ_i/dg dQ_o/dg, 3e-4 under 330 N. They are the gradient of
+//! V_i + V_o + x Q_i Q_o, convex where that product is below 1: the Hessian of the complementary energy, ((dh_i, x),
+//! (x, dh_o)), is positive definite then. Far beyond any load a law is continued as a straight line, so that the
+//! product is at most 1/4.
 
 use crate::geometry::BySide;
 
@@ -52,6 +54,12 @@ pub struct BallForces {
 /// Turns after which both forces of a ball stay as they are.
 const MOST_TURNS: usize = 60;
 
+/// Newton steps for the roots of both approaches before they are found in turns.
+const MOST_ROOTS: usize = 12;
+
+/// Last of these steps over a root: its square is below round-off.
+const ROOT_STEP: f64 = 1e-9;
+
 /// Largest tangent of a contact times what it yields under the force of the other: beyond it the law is a straight
 /// line, so that the energy of both stays convex for any trial position.
 const SHARE: f64 = 0.5;
@@ -74,6 +82,9 @@ impl BallLaws {
         if x == 0.0 {
             return BallForces::apart([0, 1].map(|k| self.laws[k].evaluate(g[k])));
         }
+        if let Some(contacts) = self.pressed(g) {
+            return self.coupled(contacts);
+        }
         let law = |k: usize, g: f64| self.laws[k].capped(g, SHARE / x);
         let mut contacts = [law(0, g[0]), law(1, g[1])];
         if contacts.iter().any(|contact| contact.force == 0.0) {
@@ -88,6 +99,45 @@ impl BallLaws {
                 break;
             }
         }
+        self.coupled(contacts)
+    }
+
+    /// Both contacts where both press and neither law is continued; None elsewhere.
+    fn pressed(&self, g: BySide<f64>) -> Option<[ContactForce; 2]> {
+        if g[0] <= 0.0 || g[1] <= 0.0 {
+            return None;
+        }
+        let kappa = self.laws.map(|law| law.compliance() * law.stiffness);
+        let yields = self.laws.map(|law| self.across * law.stiffness);
+        let mut roots = [0, 1].map(|k| g[k].sqrt() * (1.0 + 0.5 * kappa[k] * g[k].sqrt()));
+        for _ in 0..MOST_ROOTS {
+            let squares = roots.map(|x| x * x);
+            let lacks = |k: usize| {
+                let other = yields[1 - k] * squares[1 - k] * roots[1 - k];
+                squares[k] * (1.0 - kappa[k] * roots[k]) + other - g[k]
+            };
+            let own = |k: usize| 2.0 * roots[k] - 3.0 * kappa[k] * squares[k];
+            let [lacks, own] = [[lacks(0), lacks(1)], [own(0), own(1)]];
+            let across = [0, 1].map(|k| 3.0 * yields[1 - k] * squares[1 - k]);
+            let scale = 1.0 / (own[0] * own[1] - across[0] * across[1]);
+            let steps = [0, 1].map(|k| scale * (own[1 - k] * lacks[k] - across[k] * lacks[1 - k]));
+            (0..2).for_each(|k| roots[k] -= steps[k]);
+            if !(0..2).all(|k| roots[k] > 0.0 && 1.0 - 1.5 * kappa[k] * roots[k] > MIN_SLOPE) {
+                return None;
+            }
+            if (0..2).all(|k| steps[k].abs() <= ROOT_STEP * roots[k]) {
+                let at = |k: usize| self.laws[k].at_root(roots[k], 1.0 - 1.5 * kappa[k] * roots[k]);
+                let contacts = [at(0), at(1)];
+                let most = SHARE / self.across;
+                return contacts.iter().all(|at| at.tangent <= most).then_some(contacts);
+            }
+        }
+        None
+    }
+
+    /// Tangent and energies of both contacts from those of their own laws.
+    fn coupled(&self, mut contacts: [ContactForce; 2]) -> BallForces {
+        let x = self.across;
         let [inner, outer] = contacts.map(|contact| contact.tangent);
         let shared = 1.0 / (1.0 - x * x * inner * outer);
         let cross = -x * inner * outer * shared;
@@ -315,6 +365,29 @@ mod tests {
                 );
             }
         }
+    }
+
+    /// Wrong: Newton's iteration on the roots would find another solution than the turns, or none where both press.
+    #[test]
+    fn roots_of_both_contacts_are_those_of_the_turns() {
+        let mut pressed = 0;
+        for i in 1..60 {
+            for k in 1..60 {
+                let g = [3e-7 * i as f64, 3e-7 * k as f64];
+                let Some(found) = BALL.pressed(g) else { continue };
+                pressed += 1;
+                for side in 0..2 {
+                    let other = found[1 - side].force;
+                    let turn = BALL.laws[side].capped(g[side] - BALL.across * other, SHARE / BALL.across);
+                    let (a, b) = (found[side].force, turn.force);
+                    assert!(
+                        (a - b).abs() < 1e-13 * b.max(other) && !turn.beyond_limit,
+                        "{g:?} {side}: {a} {b}"
+                    );
+                }
+            }
+        }
+        assert!(pressed > 2500, "{pressed}");
     }
 
     /// Wrong: forces without an energy, so that motion would make some. Difference quotients of energy and forces; one

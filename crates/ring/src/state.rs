@@ -125,7 +125,7 @@ impl RingState {
     }
 
     /// Displacement and velocity at the weighted time of the scheme when the step's increment is `dw`, or the
-    /// velocity stays.
+    /// acceleration stays.
     pub(crate) fn within(&self, scheme: StepScheme, dw: Option<&[f64]>) -> [Vec<f64>; 2] {
         let mut within = [vec![0.0; self.w.len()], vec![0.0; self.w.len()]];
         let to = within.each_mut().map(Vec::as_mut_slice);
@@ -150,7 +150,7 @@ impl RingState {
 pub(crate) struct RowValues(pub [Vec<f64>; 3]);
 
 /// Displacement and velocity at the weighted time of a step from `[w0, v0, a0]` with the increment `dw`, or at which
-/// the velocity stays.
+/// the acceleration stays.
 pub(crate) fn within_part(
     StepScheme { integrator, dt }: StepScheme,
     dw: Option<&[f64]>,
@@ -164,7 +164,9 @@ pub(crate) fn within_part(
     };
     match dw {
         Some(dw) => each(dw, start, to, at),
-        None => each(start[1], start, to, |v0, start| at(dt * v0, start)),
+        None => each(start[1], start, to, |v0, start| {
+            at(dt * (v0 + 0.5 * dt * start[2]), start)
+        }),
     }
 }
 

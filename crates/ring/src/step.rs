@@ -51,7 +51,7 @@ pub struct KnownLoad {
 pub struct Known {
     pub(crate) of: Stamp,
     pub(crate) load: KnownLoad,
-    /// First guess of the inertia of the frame: the velocity stays.
+    /// First guess of the inertia of the frame: the acceleration stays.
     pub(crate) inertia: Option<Arc<PooledVector>>,
     /// Of a ring in harmonic space, the first half of S^-1 of its right-hand side.
     pub(crate) solved: Option<Arc<PooledVector>>,

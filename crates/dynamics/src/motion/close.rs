@@ -45,7 +45,7 @@ impl Motion<'_> {
             });
             part.report.laps.add(FRAME, part.clock.lap());
             if settled == Settling::Again {
-                self.next_round(part)?;
+                self.next_round(part, solution)?;
                 return Ok(None);
             }
         }
@@ -62,7 +62,7 @@ impl Motion<'_> {
             match end {
                 Some(End::Done(ended)) => *ring = Some(*ended),
                 Some(End::Again) => {
-                    self.next_round(part)?;
+                    self.next_round(part, solution)?;
                     return Ok(None);
                 }
                 None => {}
@@ -109,8 +109,9 @@ impl Motion<'_> {
     }
 
     /// Counts a round and hands the new predictors to the system.
-    fn next_round(&self, part: &mut StepPart<'_>) -> Result<(), DynamicsError> {
+    fn next_round(&self, part: &mut StepPart<'_>, solution: &StepSolution) -> Result<(), DynamicsError> {
         part.report.frame_rounds += 1;
+        part.before = Some(solution.unknowns.clone());
         if part.report.frame_rounds > MAX_FRAME_ROUNDS {
             return Err(DynamicsError::FrameNotSettled {
                 rounds: MAX_FRAME_ROUNDS,

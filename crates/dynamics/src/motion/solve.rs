@@ -74,7 +74,7 @@ impl BearingParts {
         self.solve_step_from(None, &policy(scale, None, costs), &mut None)
     }
 
-    /// The same by a policy, from given unknowns or from the guess of the system, and with a tangent that is kept.
+    /// The same by a policy, from given unknowns or from the guess of the system, with a tangent that is kept.
     pub(super) fn solve_step_from(
         &self,
         start: Option<Vec<f64>>,
@@ -86,11 +86,7 @@ impl BearingParts {
         let (x, reaches) = (&solved.unknowns, self.reaches(&solved.unknowns));
         let means = self.contacts.means;
         let balls = means.map(|means| self.contacts.mean_forces(lengths(&reaches), means, costs));
-        let forces: Vec<MeanForce> = balls
-            .into_iter()
-            .flatten()
-            .flat_map(|ball| ball.contacts)
-            .collect();
+        let forces: Vec<_> = balls.iter().flatten().flat_map(|b| b.contacts).collect();
         let on_shaft = system.forces_on(SHAFT, CONTACTS, x, &self.with_dead(&forces));
         Ok(StepSolution {
             shaft: system.coordinates(SHAFT, x),

@@ -13,13 +13,14 @@ use super::free::check_apart;
 use super::part::RingSteps;
 use super::place::Placing;
 use super::run::Motion;
-use super::solve::{StepSolution, check_patches, check_range};
+use super::solve::{StepSolution, check_patches, check_range, policy};
 use super::span::PartSpan;
 use super::state::PatchPlace;
 use super::state::{MotionState, StepReport};
 use crate::bearing::BearingParts;
 use crate::costs::{BLOCK_SOLVE, LOADS, NEWTON, PATCHES, UPDATE};
 use crate::error::DynamicsError;
+use crate::system::newton::{KeptTangent, Policy};
 
 /// Rounds for the places of the patches before a step counts as failed.
 const MAX_PLACE_ROUNDS: usize = 20;
@@ -35,6 +36,10 @@ pub(super) struct StepPart<'m> {
     pub parts: BearingParts,
     /// Largest force that acts at the start, N.
     pub scale: f64,
+    /// Newton's unknowns of the round before; None in the first.
+    pub before: Option<Vec<f64>>,
+    /// Newton's tangent there; None where contacts have moved since.
+    tangent: Option<KeptTangent>,
     pub report: StepReport,
     pub clock: Stopwatch,
 }
@@ -118,6 +123,8 @@ impl Motion<'_> {
             scale: self.force_scale(state, &expected.loads),
             expected,
             rings,
+            before: None,
+            tangent: None,
             report,
             clock,
         })
@@ -137,7 +144,7 @@ impl Motion<'_> {
         for _ in 0..=MAX_PLACE_ROUNDS {
             let solution = match part.parts.free {
                 Some(_) => part.parts.solve_free(self.model, part.scale, &self.costs)?,
-                None => part.parts.solve_step(part.scale, &self.costs)?,
+                None => self.solve_again(part)?,
             };
             part.report.newton_iterations += solution.iterations;
             part.report.laps.add(NEWTON, part.clock.lap());
@@ -152,6 +159,17 @@ impl Motion<'_> {
         })
     }
 
+    /// Newton on the part. In a round of a turning frame it starts from the solution of the round before, with its
+    /// tangent.
+    fn solve_again(&self, part: &mut StepPart<'_>) -> Result<StepSolution, DynamicsError> {
+        let policy = Policy {
+            keeps_factors: part.before.is_some(),
+            ..policy(part.scale, None, &self.costs)
+        };
+        let before = part.before.take();
+        part.parts.solve_step_from(before, &policy, &mut part.tangent)
+    }
+
     /// Whether the patches lie where the forces of a solution put them; else they are moved there.
     pub(super) fn stays_in_place(
         &self,
@@ -164,6 +182,7 @@ impl Motion<'_> {
             return Ok(true);
         }
         part.report.place_rounds += 1;
+        part.tangent = None;
         part.placing = self.place(&met, &self.course(state, part.span))?;
         part.places = met;
         part.report.laps.add(PATCHES, part.clock.lap());

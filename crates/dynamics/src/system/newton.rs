@@ -102,12 +102,13 @@ impl System<'_> {
         policy: &Policy,
         kept: &mut Option<KeptTangent>,
     ) -> Result<NewtonSolution, DynamicsError> {
+        let done = |unknowns, iterations| Ok(NewtonSolution { unknowns, iterations });
         let (mut history, mut best, mut stalled) = (Vec::new(), f64::INFINITY, 0);
         let mut at = self.evaluate(&x, policy.costs);
         let (mut worst, mut limit, mut bodies) = (0, 0.0, Vec::new());
         for iteration in 0..policy.most_iterations {
-            let (place, now) = largest(&policy.scaled(&at.residual));
-            worst = place;
+            let now;
+            (worst, now) = largest(&policy.scaled(&at.residual));
             if !now.is_finite() {
                 let what = "a contact force";
                 return Err(DynamicsError::NotFinite { what });
@@ -118,6 +119,9 @@ impl System<'_> {
             best = best.min(now);
             let scale = force_scale(&at.links, policy.force_scale);
             limit = policy.residual_limit * scale;
+            if now <= RESIDUAL_TARGET * scale {
+                return done(x, iteration);
+            }
             let mut tangent = match kept.take() {
                 Some(earlier) if policy.keeps_factors && is_fast => earlier,
                 _ => self.tangent(&x, &at, &mut bodies),
@@ -130,10 +134,9 @@ impl System<'_> {
             let places = || policy.ends_at_floor && now <= self.round_off(&x);
             let is_at_floor = policy.ends_at_floor && now <= floor() || now <= limit && places();
             let is_floor = || now <= limit.max(floor()) || places();
-            if now <= RESIDUAL_TARGET * scale || (stalled >= 2 && is_floor()) {
-                let (unknowns, iterations) = (x, iteration);
+            if stalled >= 2 && is_floor() {
                 *kept = Some(tangent);
-                return Ok(NewtonSolution { unknowns, iterations });
+                return done(x, iteration);
             }
             let factors = match tangent.factors.take() {
                 Some(factors) => factors,
@@ -145,8 +148,7 @@ impl System<'_> {
             if is_at_floor {
                 // Light bodies beside heavy ones gain by the last step; its residual is round-off of the heavy ones.
                 x.iter_mut().zip(&step).for_each(|(x, s)| *x += s);
-                let (unknowns, iterations) = (x, iteration + 1);
-                return Ok(NewtonSolution { unknowns, iterations });
+                return done(x, iteration + 1);
             }
             (x, at) = self.search(x, at, &step, policy);
             (policy.watch)(&x)?;

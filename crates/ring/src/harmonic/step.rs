@@ -65,7 +65,7 @@ impl HarmonicFactor {
     }
 
     /// Rows of a defect in a step from `start` with the regular ring's predictor; `answers` is V, `moved` the motion
-    /// of the rows that the inertia of the frame is to fit, where it does not stay at the velocity of the start.
+    /// of the rows that the inertia of the frame is to fit, where its acceleration does not stay that of the start.
     fn defect_step(
         &self,
         (of_space, defect): (&SpaceDefect, &DefectFactor),

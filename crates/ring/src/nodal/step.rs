@@ -77,7 +77,8 @@ impl<S: NodalSolver> NodalFactor<S> {
         }
     }
 
-    /// Inertia of the turning frame at the weighted time of a step with an increment, or in which the velocity stays.
+    /// Inertia of the turning frame at the weighted time of a step with an increment, or in which the acceleration
+    /// stays.
     fn frame_load(&self, turn: FrameTurn, old: &RingState, dw: Option<&[f64]>) -> Vec<f64> {
         let within = old.within(self.scheme, dw);
         frame_load(&self.body.held, self.body.solver.matrices(), turn, within)

@@ -80,7 +80,7 @@ impl<'a> Pass<'a> {
     }
 
     /// Inertia of the turning frame at the weighted time of a step from `[w, v, a]` with an increment, or at which
-    /// the velocity stays.
+    /// the acceleration stays.
     pub(super) fn frame_part(
         &self,
         turning: Turning<'_>,
@@ -134,7 +134,7 @@ impl<'a> Pass<'a> {
             add_part(solved, load.of(group));
         }
         if let Some(turning) = turning {
-            // First guess: the velocity stays.
+            // First guess: the acceleration stays.
             self.frame_part(*turning, group, ([w, v, a], None), field, guess);
             add_part(solved, guess);
         }
