@@ -2,8 +2,13 @@
 
 use std::sync::OnceLock;
 
+use checkpoint::{committed_steps, step_file_name};
+
+use crate::interruption::{outcome_of, signal, wait_for_steps};
+use crate::resume::{assert_cuts_continue, refused, resumed};
+use crate::util::lockstep::{assert_same_run, copy, small_motion};
 use crate::util::tables::{Table, number, summary};
-use crate::util::{Dir, Files, assert_close, with_line};
+use crate::util::{Dir, Files, RIGID, assert_close, with_line};
 
 /// Steps of the tests' scene.
 const QUASI: &str = "[quasi_static]\nduration = \"1 ms\"\nstep = \"0.25 ms\"\noutput_every = 3\n\n[speed]\n\
@@ -143,4 +148,129 @@ fn instants_before_a_failure_are_kept() {
         let path = dir.path(&format!("out/step_{step:06}.hdf"));
         assert_eq!(path.is_file(), is_there, "{}", path.display());
     }
+}
+
+/// 40 instants, a file each; balls come into load and go out of it.
+fn small_turning() -> Dir {
+    let dir = small_motion();
+    let quasi = "[quasi_static]\nduration = \"8 ms\"\nstep = \"0.2 ms\"\n\n[speed]\ninner = \"12000 rpm\"\n\n\
+                 [effects.ball_centrifugal]";
+    dir.write(
+        "scene.toml",
+        with_line("[static]", "[static]", quasi).replace("\"2 kN\"", "\"0.4 kN\""),
+    );
+    dir
+}
+
+/// Wrong: which instants are solved at the same time would show in the last digits, or files be out of order.
+#[test]
+fn instants_have_the_same_bits_on_any_number_of_threads() {
+    let dir = small_turning();
+    for threads in ["1", "2", "4"] {
+        dir.run(threads, &["--threads", threads]);
+    }
+    assert_eq!(committed_steps(&dir.path("1")).unwrap().len(), 41);
+    for threads in ["2", "4"] {
+        assert_same_run(&dir, "1", threads);
+        assert_eq!(
+            summary(&dir, "1")["iterations"],
+            summary(&dir, threads)["iterations"]
+        );
+    }
+}
+
+/// Wrong: a resumed run would start its instants from others than the run that was not stopped: cut where eight begin,
+/// where they end and between, resumed on other numbers of threads.
+#[test]
+fn equilibria_cut_at_any_step_continue_bit_for_bit() {
+    let dir = small_turning();
+    let reduced = format!("{}\n[output.reduction]\n", dir.text("scene.toml"));
+    dir.write("scene.toml", reduced);
+    dir.run("whole", &["--threads", "2"]);
+    assert_cuts_continue(
+        &dir,
+        &[
+            ("0", "2"),
+            ("7", "1"),
+            ("8", "4"),
+            ("9", "2"),
+            ("20", "1"),
+            ("39", "2"),
+        ],
+    );
+    for cut in ["cut0", "cut20"] {
+        let [whole, cut] = ["whole", cut].map(|out| summary(&dir, out));
+        assert_eq!(whole["iterations"], cut["iterations"]);
+        assert_eq!(whole["warnings"], cut["warnings"]);
+    }
+    let again = resumed(&dir, &["whole"]);
+    let expected = "nothing to do: whole has finished with step 40 of 40, t = 8.000000e-3 s; a longer duration goes on \
+                    from there, --set quasi_static.duration=...";
+    assert!(again.stdout.contains(expected), "{}", again.stdout);
+    copy(&dir, "whole", "longer");
+    resumed(&dir, &["longer", "--set", "quasi_static.duration=\"8.4 ms\""]);
+    dir.run("long", &["--set", "quasi_static.duration=\"8.4 ms\""]);
+    assert_same_run(&dir, "long", "longer");
+    refused(
+        &dir,
+        &["whole", "--set", "quasi_static.duration=\"4 ms\""],
+        &[
+            "the run is at step 40, t = 0.008 s, beyond quasi_static.duration = 0.004 s; expected a longer duration",
+        ],
+    );
+}
+
+/// Wrong: a kill at some instant, or the end of the time of a batch job, would lose equilibria or change later ones.
+#[test]
+fn killed_and_stopped_equilibria_go_on_bit_for_bit() {
+    let dir = small_turning();
+    dir.run("whole", &[]);
+    let (mut arguments, mut ends) = (vec!["run", "scene.toml", "--out", "cut"], 0);
+    for name in ["KILL", "TERM", "KILL", "TERM"] {
+        let mut child = dir.start(&arguments);
+        let messages = wait_for_steps(&mut child);
+        signal(&child, name);
+        let outcome = outcome_of(child, messages);
+        ends += usize::from(outcome.code != Some(0));
+        if name == "TERM" && outcome.code == Some(75) {
+            assert!(
+                outcome.stderr.contains("go on with raceway resume cut"),
+                "{}",
+                outcome.stderr
+            );
+        }
+        if dir.path("cut").is_dir() && !committed_steps(&dir.path("cut")).unwrap_or_default().is_empty() {
+            arguments = vec!["resume", "cut"];
+        }
+    }
+    assert!(ends > 0, "no run was cut");
+    let last = dir.raceway(&arguments);
+    assert_eq!(last.code, Some(0), "{}", last.stderr);
+    assert_same_run(&dir, "whole", "cut");
+}
+
+/// Wrong: a step would not say where the next equilibria start, or say it twice; a resumed run would have other loads.
+#[test]
+fn a_step_holds_where_the_next_equilibria_start() {
+    let dir = small_turning();
+    dir.run("out", &RIGID);
+    let state = |step: u64| {
+        let path = dir.path("out").join(step_file_name(step));
+        checkpoint::read_step(&path).unwrap().state
+    };
+    let [ahead, of_39, of_32] = [40, 39, 32].map(state);
+    assert!(!ahead.contains_key("start_shaft") && !of_32.contains_key("start_shaft"));
+    for name in ["shaft", "balls", "seat"] {
+        let start = &of_39[&format!("start_{name}")];
+        assert_eq!(format!("{start:?}"), format!("{:?}", of_32[name]), "{name}");
+    }
+    let load = "effects.axial_force.value=\"1 kN\"";
+    refused(
+        &dir,
+        &["out", "--step", "39", "--set", load],
+        &[
+            "--set would change effects.axial_force.value",
+            "a resumed run may change only dynamic.duration",
+        ],
+    );
 }

@@ -402,14 +402,16 @@ fn a_run_goes_on_beside_its_packs() {
     assert_same_run(&dir, "whole", "cut");
 }
 
-/// Wrong: a sweep would be taken for a motion.
+/// Wrong: a sweep would be taken for a run over time.
 #[test]
-fn only_motions_are_resumed() {
+fn only_runs_over_time_are_resumed() {
     let dir = Dir::with_scene(crate::util::SCENE);
     dir.run("out", &RIGID);
     refused(
         &dir,
         &["out"],
-        &["holds results of a [static] scene; only a motion"],
+        &[
+            "holds results of a [static] scene; only a run over time, a scene with [dynamic] or [quasi_static], can",
+        ],
     );
 }

@@ -491,7 +491,7 @@ fn a_list_in_motion_has_the_same_bits_for_any_threads_and_falls_back_from_damage
     let at_rest = pair("[static]");
     succeeds(&at_rest, &["run", "pair.toml", "--out", "out"]);
     let refused = at_rest.raceway(&["resume", "out"]);
-    let expected = "holds results at rest; only a run over time, a scene with [dynamic] or [quasi_static], can be \
-                    resumed";
+    let expected = "holds results of a [static] scene; only a run over time, a scene with [dynamic] or [quasi_static], \
+                    can be resumed";
     assert!(refused.stderr.contains(expected), "{}", refused.stderr);
 }

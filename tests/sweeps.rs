@@ -2,8 +2,10 @@
 
 use std::sync::OnceLock;
 
+use checkpoint::committed_steps;
 use serde_json::Value;
 
+use crate::util::lockstep::{assert_same_run, small_motion};
 use crate::util::tables::{Table, keys, number, summary};
 use crate::util::{Dir, Files, RIGID, SCENE, assert_close, assert_within, with_line};
 
@@ -276,4 +278,48 @@ fn balls_of_a_sweep_are_shown_where_they_are() {
     // Coordinates of 30 mm in f64.
     assert_within("x", moved[0], now * cos - radius, 1e-15);
     assert_within("y", moved[1], now * sin, 1e-15);
+}
+
+/// Wrong: points solved at the same time would show in the bits, in the order of files, or in which failure is told:
+/// the tenth of twelve has no equilibrium, those before it are kept.
+#[test]
+fn points_solved_at_the_same_time_are_those_solved_one_by_one() {
+    let dir = small_motion();
+    let newtons = [
+        200,
+        400,
+        600,
+        800,
+        1000,
+        1200,
+        1400,
+        1600,
+        1800,
+        1_000_000_000,
+        2000,
+        2200,
+    ];
+    let values = newtons.map(|force| format!("\"{force} N\"")).join(", ");
+    let sweep = format!("[sweep]\nkey = \"effects.axial_force.value\"\nvalues = [{values}]");
+    dir.write("scene.toml", with_line("[static]", "[static]", &sweep));
+    for threads in ["1", "2", "4"] {
+        let outcome = dir.raceway(&["run", "scene.toml", "--out", threads, "--threads", threads]);
+        assert_eq!(outcome.code, Some(3), "{}", outcome.stderr);
+        let message = format!(
+            "error: effects.axial_force.value_n = 1000000000 failed after 9 finished points, which are kept in \
+             {threads}"
+        );
+        assert!(outcome.stderr.contains(&message), "{}", outcome.stderr);
+        assert_eq!(
+            committed_steps(&dir.path(threads)).unwrap(),
+            (0..9).collect::<Vec<_>>()
+        );
+        let points = summary(&dir, threads)["sweep"]["points"]
+            .as_array()
+            .unwrap()
+            .len();
+        assert_eq!(points, 9);
+    }
+    assert_same_run(&dir, "1", "2");
+    assert_same_run(&dir, "1", "4");
 }

@@ -21,6 +21,7 @@ mod motion;
 mod options;
 mod pack;
 mod periodic_gain;
+mod points_ahead;
 mod progress;
 mod quasi_static;
 mod rank_table;

@@ -1,32 +1,50 @@
-//! `raceway run` of a `[quasi_static]` scene: equilibria in time, each started from the one before.
+//! `raceway run` of a `[quasi_static]` scene of one bearing, and how it goes on: equilibria in time, several of them
+//! solved at the same time ([`crate::points_ahead`]).
+//!
+//! A step file holds what the next equilibria start from, so that a resumed run has the same bits.
 
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::time::Instant;
 
+use anyhow::{Context, anyhow};
+use checkpoint::StateArray;
 use comm::print;
 use contact::Side;
 use dynamics::kinematics::{Rolling, Speed};
-use dynamics::{Model, QuasiStaticMotion, StaticSolution};
+use dynamics::points::{PointStart, points_per_start};
+use dynamics::{DynamicsError, Model, QuasiStaticMotion, StaticSolution};
 use results::disk::Forecast;
 use results::failure::{Failure, agree};
-use results::files::Files;
+use results::files::{Files, ResumedFrom, say_folder};
 use results::memory::Forecasts;
-use results::motion_fields::RestartState;
+use results::motion_fields::{Recorded, RestartState};
+use results::reduction::take_arrays;
+use results::rest_state;
 use results::shown::Shown;
 use results::snapshot::Snapshot;
+use results::state_arrays::Arrays;
+use results::stop::Stop;
 use results::summary::{Findings, Summary};
-use results::survey::build_surveyed;
-use results::{console, fields, seat};
+use results::survey::{Survey, build_surveyed};
+use results::{console, seat};
 use scene::{Scene, rolling};
 use timer::Stopwatch;
 
 use crate::instants::{self, Due, OverInstants, PROGRESS_STEPS, WrittenSteps};
 use crate::options::Limits;
+use crate::points_ahead::{Grouping, PointAnswer, PointsAhead, Taken};
 use crate::progress::Progress;
 use crate::remarks::Remarks;
+use crate::stored::Stored;
 
-/// Runs the equilibria.
+/// Array of a step file with what has been counted so far: rounds, Newton's iterations, instants with warnings.
+const COUNTS: &str = "equilibrium_counts";
+
+/// Array of a step file with the bytes of the warnings so far, a line each.
+const WARNED: &str = "equilibrium_warnings";
+
+/// Runs the equilibria from the first.
 pub fn run(
     scene: &Scene,
     settings: &scene::QuasiStatic,
@@ -35,65 +53,254 @@ pub fn run(
     start: Instant,
 ) -> Result<(), Failure> {
     let mut progress = Progress::new(1 + settings.n_steps);
+    let (model, survey, begun) = read_model(scene, (dir, 0), limits, &progress, start)?;
+    let (bearing, group) = turning(scene, &model, settings, &progress)?;
+    let solve = |n: u64, from: Option<&PointStart>| point(&bearing, n, from);
+    let rolling = rolling(scene);
+    progress.stage("first equilibrium");
+    rayon::in_place_scope(|scope| {
+        let mut ahead = PointsAhead::new(scope, &solve, group, None);
+        let (first, ()) = ahead.take()?;
+        let first = first.solution;
+        // The first solution makes the folder: a scene that has none leaves no files.
+        let shown = Snapshot::of_equilibrium(&first, rolling.as_ref());
+        let files = Files::create(scene, &model, dir, &shown, survey, &first.warnings);
+        let mut series = QuasiStaticRun {
+            scene,
+            settings,
+            model: &model,
+            rolling: rolling.as_ref(),
+            bearing: &bearing,
+            ahead,
+            files: agree(files)?,
+            counts: Counts::default(),
+            warnings: Vec::new(),
+            step: 0,
+            last: first,
+            written: WrittenSteps::default(),
+            dir,
+        };
+        series.count();
+        instants::record(&mut series, RestartState::Stored)?;
+        progress.advance();
+        series.finish_run(progress, limits, begun)
+    })
+}
+
+/// Goes on with the equilibria from a stored step.
+pub fn resume(
+    scene: &Scene,
+    settings: &scene::QuasiStatic,
+    stored: Stored,
+    limits: &Limits,
+    start: Instant,
+) -> Result<(), Failure> {
+    let (dir, step) = (stored.dir.clone(), stored.step);
+    let mut progress = Progress::new(1 + settings.n_steps);
+    progress.start_at(1 + step);
+    let (model, survey, begun) = read_model(scene, (&dir, step), limits, &progress, start)?;
+    let (bearing, group) = turning(scene, &model, settings, &progress)?;
+    let RestoredPoint {
+        taken,
+        counts,
+        warnings,
+        reduction,
+    } = agree(restore(&stored, &model))?;
+    let last = found_again(&bearing, &taken, group).map_err(Failure::solving)?;
+    let rolling = rolling(scene);
+    let shown = Snapshot::of_equilibrium(&last, rolling.as_ref());
+    let from = ResumedFrom {
+        step,
+        tables: stored.tables.as_ref(),
+        warnings: &stored.warnings,
+        reduction: &reduction,
+    };
+    let files = agree(Files::resume(scene, &model, stored.lock, &shown, survey, &from))?;
+    if files.are_written_here() {
+        say_folder(&dir);
+    }
+    let solve = |n: u64, from: Option<&PointStart>| point(&bearing, n, from);
+    rayon::in_place_scope(|scope| {
+        let series = QuasiStaticRun {
+            scene,
+            settings,
+            model: &model,
+            rolling: rolling.as_ref(),
+            bearing: &bearing,
+            ahead: PointsAhead::new(scope, &solve, group, Some(taken)),
+            files,
+            counts,
+            warnings,
+            step,
+            last,
+            written: WrittenSteps::all_of(step),
+            dir: &dir,
+        };
+        series.finish_run(progress, limits, begun)
+    })
+}
+
+/// What is known before the first equilibrium.
+struct Begun {
+    remarks: Remarks,
+    /// When the meshes were read, s after `start`.
+    read: f64,
+    start: Instant,
+}
+
+/// Reads the meshes of a run that has `done` so many steps in a folder.
+fn read_model(
+    scene: &Scene,
+    (dir, done): (&Path, u64),
+    limits: &Limits,
+    progress: &Progress,
+    start: Instant,
+) -> Result<(Model, Survey, Begun), Failure> {
     progress.stage("reading meshes");
     let (model, mut survey) = agree(build_surveyed(scene, scene, dir, |model| {
-        Forecast::new(scene, model, 0).require_space(dir, limits.ignore_disk_space)
+        Forecast::new(scene, model, done).require_space(dir, limits.ignore_disk_space)
     }))?;
-    let remarks = Remarks::on(scene, &model, std::mem::take(&mut survey.doubts))?;
-    let read = start.elapsed().as_secs_f64();
-    progress.stage("factoring the stiffness of the rings");
-    let rolling = rolling(scene);
-    let at_rest = || Rolling::new(&model.geometry, Speed::constant(0.0), [0.0; 2]);
-    let turning = rolling.clone().unwrap_or_else(at_rest);
-    let mut bearing = QuasiStaticMotion::new(&model, turning, settings.step).map_err(Failure::solving)?;
-    progress.stage("first equilibrium");
-    let first = bearing.step(0, None).map_err(Failure::solving)?;
-    // The first solution makes the folder: a scene that has none leaves no files.
-    let files = Files::create(
-        scene,
-        &model,
-        dir,
-        &Snapshot::of_equilibrium(&first, rolling.as_ref()),
-        survey,
-        &first.warnings,
-    );
-    let files = agree(files)?;
-    let mut series = QuasiStaticRun {
-        scene,
-        settings,
-        model: &model,
-        rolling: rolling.as_ref(),
-        bearing: &mut bearing,
-        files,
-        iterations: [0; 3],
-        warnings: Vec::new(),
-        warned: 0,
-        step: 0,
-        last: first,
-        written: WrittenSteps::default(),
-        dir,
+    let begun = Begun {
+        remarks: Remarks::on(scene, &model, std::mem::take(&mut survey.doubts))?,
+        read: start.elapsed().as_secs_f64(),
+        start,
     };
-    let mut clock = Stopwatch::start();
-    let ended = series.run(&mut progress);
-    let seconds = clock.lap();
-    progress.finish();
-    series.finish_run((ended, seconds), remarks, (read, start))
+    Ok((model, survey, begun))
+}
+
+/// A bearing ready to turn, and which of its instants start from the same one.
+fn turning<'m>(
+    scene: &Scene,
+    model: &'m Model,
+    settings: &scene::QuasiStatic,
+    progress: &Progress,
+) -> Result<(QuasiStaticMotion<'m>, Grouping), Failure> {
+    progress.stage("factoring the stiffness of the rings");
+    let at_rest = || Rolling::new(&model.geometry, Speed::constant(0.0), [0.0; 2]);
+    let turning = rolling(scene).unwrap_or_else(at_rest);
+    let bearing = QuasiStaticMotion::new(model, turning, settings.step).map_err(Failure::solving)?;
+    let group = Grouping {
+        size: points_per_start(model),
+        last: settings.n_steps,
+    };
+    Ok((bearing, group))
+}
+
+/// The equilibrium of an instant.
+fn point(bearing: &QuasiStaticMotion<'_>, n: u64, from: Option<&PointStart>) -> PointAnswer<()> {
+    Ok((bearing.point(n, from).map_err(Failure::solving)?, ()))
+}
+
+/// What the step from which a run goes on shows. Nothing is written of it, and nothing starts from it.
+fn found_again(
+    bearing: &QuasiStaticMotion<'_>,
+    taken: &Taken,
+    group: Grouping,
+) -> Result<StaticSolution, DynamicsError> {
+    let is_start = taken.n.is_multiple_of(group.size);
+    let from_start = bearing
+        .point(taken.n, Some(&taken.start))
+        .ok()
+        .filter(|_| !is_start);
+    let found = from_start.map_or_else(|| bearing.point(taken.n, Some(&taken.before)), Ok);
+    Ok(found?.solution)
+}
+
+/// What has been counted of a run.
+#[derive(Clone, Copy, Default)]
+struct Counts {
+    rounds: u64,
+    newton: u64,
+    /// Instants with warnings.
+    warned: u64,
+}
+
+/// What a run goes on with.
+struct RestoredPoint {
+    taken: Taken,
+    counts: Counts,
+    warnings: Vec<String>,
+    /// What is known of the whole run by `[output.reduction]`.
+    reduction: Arrays,
+}
+
+/// The arrays of a step file.
+fn arrays(taken: &Taken, counts: Counts, warnings: &[String]) -> Arrays {
+    let start = (taken.start != taken.before).then_some(&taken.start);
+    let mut arrays = rest_state::store_point(&taken.before, start);
+    let Counts {
+        rounds,
+        newton,
+        warned,
+    } = counts;
+    let stored = |count: u64| i64::try_from(count).expect("nobody counts to 2^63");
+    let counts = [rounds, newton, warned].map(stored);
+    arrays.insert(COUNTS.to_string(), StateArray::Integer(counts.to_vec()));
+    if !warnings.is_empty() {
+        let text = warnings.join("\n").into_bytes().into_iter().map(i64::from);
+        arrays.insert(WARNED.to_string(), StateArray::Integer(text.collect()));
+    }
+    arrays
+}
+
+/// What the arrays of a step say.
+fn restore(stored: &Stored, model: &Model) -> Result<RestoredPoint, Failure> {
+    let at = || format!("step {} of {}", stored.step, stored.dir.display());
+    let mut arrays = stored.arrays.clone();
+    let reduction = take_arrays(&mut arrays);
+    let counts = match arrays.remove(COUNTS) {
+        Some(StateArray::Integer(counts)) if counts.len() == 3 => counts,
+        _ => {
+            return Err(anyhow!(
+                "{} has no restart state of equilibria over time, as of an older version; run the scene again",
+                at()
+            )
+            .into());
+        }
+    };
+    let [rounds, newton, warned] = [0, 1, 2].map(|i| u64::try_from(counts[i]).unwrap_or(0));
+    let warnings = match arrays.remove(WARNED) {
+        Some(StateArray::Integer(bytes)) => {
+            let bytes: Vec<u8> = bytes
+                .into_iter()
+                .filter_map(|byte| byte.try_into().ok())
+                .collect();
+            String::from_utf8_lossy(&bytes)
+                .lines()
+                .map(str::to_string)
+                .collect()
+        }
+        _ => Vec::new(),
+    };
+    let (before, start) = rest_state::load_point(arrays, model).with_context(at)?;
+    Ok(RestoredPoint {
+        taken: Taken {
+            n: stored.step,
+            start: start.unwrap_or_else(|| before.clone()),
+            before,
+        },
+        counts: Counts {
+            rounds,
+            newton,
+            warned,
+        },
+        warnings,
+        reduction,
+    })
 }
 
 /// A run under way.
-struct QuasiStaticRun<'a, 'm> {
+struct QuasiStaticRun<'a, 's, 'scope> {
     scene: &'a Scene,
     settings: &'a scene::QuasiStatic,
     model: &'a Model,
     rolling: Option<&'a Rolling>,
-    bearing: &'a mut QuasiStaticMotion<'m>,
+    bearing: &'a QuasiStaticMotion<'a>,
+    ahead: PointsAhead<'s, 'scope, ()>,
     files: Files,
-    /// Steps done, rounds and Newton iterations so far.
-    iterations: [usize; 3],
+    counts: Counts,
     /// Those of the first instant that had any.
     warnings: Vec<String>,
-    /// Number of instants that had some.
-    warned: u64,
     /// Number of the last equilibrium.
     step: u64,
     /// The last equilibrium.
@@ -102,20 +309,11 @@ struct QuasiStaticRun<'a, 'm> {
     dir: &'a Path,
 }
 
-impl QuasiStaticRun<'_, '_> {
-    /// Steps to the end of the run. On failure the last equilibrium has its step file.
-    fn run(&mut self, progress: &mut Progress) -> Result<(), Failure> {
-        self.count();
-        instants::record(self, RestartState::Stored)?;
-        progress.advance();
-        instants::run(self, 1, None, progress)
-    }
-
+impl QuasiStaticRun<'_, '_, '_> {
     /// Takes note of what the last equilibrium took.
     fn count(&mut self) {
-        self.iterations[0] = self.step as usize;
-        self.iterations[1] += self.last.rounds;
-        self.iterations[2] += self.last.newton_iterations;
+        self.counts.rounds += self.last.rounds as u64;
+        self.counts.newton += self.last.newton_iterations as u64;
         self.note_warnings();
     }
 
@@ -125,32 +323,33 @@ impl QuasiStaticRun<'_, '_> {
         if self.last.warnings.is_empty() {
             return;
         }
-        if self.warned == 0 {
+        if self.warnings.is_empty() {
             let at = |warning: &String| format!("t = {time:.6e} s: {warning}");
             self.warnings = self.last.warnings.iter().map(at).collect();
         }
-        self.warned += 1;
+        self.counts.warned += 1;
     }
 
-    /// Closes the files, writes the summary, and prints the results of a run without a failure, which took so many
-    /// seconds; it was read until `read`, s, after `start`.
-    fn finish_run(
-        self,
-        (ended, seconds): (Result<(), Failure>, f64),
-        remarks: Remarks,
-        (read, start): (f64, Instant),
-    ) -> Result<(), Failure> {
+    /// Steps to the end of the run, closes the files and sums up, also when the run ends early.
+    fn finish_run(mut self, mut progress: Progress, limits: &Limits, begun: Begun) -> Result<(), Failure> {
+        let Begun { remarks, read, start } = begun;
+        let (mut clock, first) = (Stopwatch::start(), self.step);
+        let mut stop = agree(Stop::listen(start, limits.wall_time).map_err(Failure::from))?;
+        let ended = instants::run(&mut self, first + 1, Some(&mut stop), &mut progress);
+        let seconds = clock.lap();
+        progress.finish();
         let (scene, model, settings) = (self.scene, self.model, self.settings);
         let seat = seat::of_run(model, &self.last, self.dir);
         let findings = self.findings(&ended, remarks);
         let snapshot = findings.last.clone();
         let solver = &self.bearing.solver;
         let forecast = Side::BOTH.map(|side| solver.ring(side).map(|r| r.solver.memory));
-        let forecast = Forecasts::at_rest(forecast, model);
-        let costs = agree(self.files.finish(read, forecast, solver.laps(), start));
-        // A run that failed says why, not what its failure did to the files.
+        let forecast = Forecasts::of_points(forecast, model, 1 + settings.n_steps);
+        let laps = solver.laps_with(&self.ahead.laps);
+        let costs = agree(self.files.finish(read, forecast, laps, start));
+        // A run that failed says why, not what its failure did to the files; one that stopped must have its step.
         let costs = match (costs, &ended) {
-            (Err(_), Err(_)) => return ended,
+            (Err(_), Err(Failure::User(_) | Failure::Numerical(_))) => return ended,
             (costs, _) => costs?,
         };
         let summary = Summary::new(scene, model, findings, &costs)
@@ -159,23 +358,27 @@ impl QuasiStaticRun<'_, '_> {
         agree(summary.write(self.dir).map_err(Failure::from))?;
         ended?;
         console::print_snapshot(&snapshot);
-        let steps = settings.n_steps;
+        let steps = self.step - first;
         print::line(format_args!(
             "{steps} steps of {} s, {:.1} ms per step",
             settings.step,
-            1e3 * seconds / steps as f64
+            1e3 * seconds / steps.max(1) as f64
         ));
         summary.print_costs();
         Ok(())
     }
 
     fn findings(&self, ended: &Result<(), Failure>, remarks: Remarks) -> Findings {
-        let [steps, rounds, newton] = self.iterations;
+        let Counts {
+            rounds,
+            newton,
+            warned,
+        } = self.counts;
+        let counted = [("steps", self.step), ("rounds", rounds), ("newton", newton)];
         let mut warnings = [remarks.warnings, self.warnings.clone()].concat();
-        if self.warned > 1 {
+        if warned > 1 {
             warnings.push(format!(
-                "{} instants have warnings; those of the first are given",
-                self.warned
+                "{warned} instants have warnings; those of the first are given"
             ));
         }
         Findings {
@@ -185,14 +388,14 @@ impl QuasiStaticRun<'_, '_> {
                 .map_or("finished".to_string(), Failure::status),
             last: Snapshot::of_equilibrium(&self.last, self.rolling),
             points: Vec::new(),
-            iterations: BTreeMap::from([("steps", steps), ("rounds", rounds), ("newton", newton)]),
+            iterations: BTreeMap::from(counted.map(|(name, count)| (name, count as usize))),
             warnings,
             advice: remarks.advice,
         }
     }
 }
 
-impl OverInstants for QuasiStaticRun<'_, '_> {
+impl OverInstants for QuasiStaticRun<'_, '_, '_> {
     fn due(&self) -> Due {
         Due {
             last: self.settings.n_steps,
@@ -222,9 +425,9 @@ impl OverInstants for QuasiStaticRun<'_, '_> {
     }
 
     fn advance(&mut self, n: u64, _progress: &mut Progress) -> Result<(), Failure> {
-        let next = self.bearing.step(n, Some(&self.last));
-        self.last =
-            next.map_err(|error| instants::failed(self, "the last equilibrium", Failure::solving(error)))?;
+        let next = self.ahead.take();
+        let (next, ()) = next.map_err(|failure| instants::failed(self, "the last equilibrium", failure))?;
+        self.last = next.solution;
         self.step = n;
         self.count();
         Ok(())
@@ -244,16 +447,21 @@ impl OverInstants for QuasiStaticRun<'_, '_> {
         self.files.write_probes(step, time, None, &shown)
     }
 
-    fn append_files(&mut self, _restart: RestartState) -> Result<(), Failure> {
+    fn append_files(&mut self, restart: RestartState) -> Result<(), Failure> {
         let (model, last, scene) = (self.model, &self.last, self.scene);
         let at = (self.step, self.time(self.step));
         let (apart, n_steps) = (self.settings.output_every, self.settings.n_steps);
         let kept = scene.output.every.kept(at.0, apart, n_steps);
         let gathered = self.files.gather_stress(&shown(model, last), kept);
         self.files.write_profiles(at.0, at.1, None, &shown(model, last))?;
-        self.files.write_fields(|stress| {
-            fields::record(&shown(model, last), last, (stress, gathered), at, (scene, kept))
-        })
+        if !self.files.are_written_here() {
+            return Ok(());
+        }
+        let taken = self.ahead.taken().expect("the last equilibrium has been taken");
+        let state = arrays(taken, self.counts, &self.warnings);
+        let record = Recorded::of_equilibrium(&shown(model, last), at, gathered, (scene, kept), state)?;
+        self.files
+            .write_fields_later(restart, move |stress| record.record(stress))
     }
 }
 

@@ -1,4 +1,5 @@
-//! `raceway resume`: goes on with a motion from one of its steps, to the same bits as if it had not been interrupted.
+//! `raceway resume`: goes on with a run over time, a motion or equilibria, from one of its steps, to the same bits as
+//! if it had not been interrupted.
 //!
 //! All that evolves comes from the step file, the model from the scene text stored in it. Only how long the run goes
 //! and what it writes may change ([`MAY_CHANGE`]). The scene file and the meshes must still be those of the run: a
@@ -16,13 +17,13 @@ use results::about::{MAY_CHANGE, OVERRIDES, SCENE_FILE, WARNINGS, require_same_m
 use results::failure::{Failure, agree};
 use results::integrity::doubts;
 use results::summary::read_summary;
-use scene::{Analysis, Dynamic, MeshFiles, Scene, difference};
+use scene::{MeshFiles, Scene, difference};
 
-use crate::motion;
 use crate::options::Limits;
 use crate::several_state::ListChanges;
 use crate::shared::{acquire, note_unshared, of_root};
-use crate::stored::Stored;
+use crate::stored::{OverTime, Stored};
+use crate::{motion, quasi_static};
 
 /// What the command line asks for.
 #[derive(Debug, Args)]
@@ -32,7 +33,8 @@ pub struct ResumeRequest {
     /// Step to go on from; default: the newest whole one with a restart state. Later steps are moved aside.
     #[arg(long)]
     pub step: Option<u64>,
-    /// Changes how long the run goes or what it writes: dynamic.duration, dynamic.output_every, output.*, life.*.
+    /// Changes how long the run goes or what it writes: duration and output_every of dynamic or quasi_static, output.*,
+    /// life.*.
     #[arg(long = "set", value_name = "PATH=VALUE")]
     overrides: Vec<String>,
     /// Scene file of the run, when it is not where it was.
@@ -67,24 +69,15 @@ pub fn resume(request: &ResumeRequest) -> Result<(), Failure> {
         record,
         about,
         scene,
-        dynamic,
+        course,
         is_finished,
     } = agree(read(request, step))?;
-    let n_steps = dynamic.n_steps;
+    let at = format!("{step} of {}, t = {:.6e} s", course.n_steps(), record.time);
     if is_finished {
-        print::line(format_args!(
-            "nothing to do: {} has finished with step {step} of {n_steps}, t = {:.6e} s; a longer duration goes on \
-             from there, --set dynamic.duration=...",
-            dir.display(),
-            record.time
-        ));
+        course.say_finished(dir, &at);
         return Ok(());
     }
-    print::note(format_args!(
-        "resuming {} after step {step} of {n_steps}, t = {:.6e} s",
-        dir.display(),
-        record.time
-    ));
+    print::note(format_args!("resuming {} after step {at}", dir.display()));
     note_unshared(&scene);
     let warnings = about.get(WARNINGS).map_or(Vec::new(), |text| lines(text));
     let stored = Stored {
@@ -96,7 +89,12 @@ pub fn resume(request: &ResumeRequest) -> Result<(), Failure> {
         time: record.time,
         arrays: record.state,
     };
-    motion::resume(&scene, &dynamic, stored, &request.limits, start)?;
+    match &course {
+        OverTime::Motion(dynamic) => motion::resume(&scene, dynamic, stored, &request.limits, start)?,
+        OverTime::Equilibria(settings) => {
+            quasi_static::resume(&scene, settings, stored, &request.limits, start)?;
+        }
+    }
     print::line(format_args!("results: {}", dir.display()));
     Ok(())
 }
@@ -106,7 +104,7 @@ struct Read {
     record: StepRecord,
     about: BTreeMap<String, String>,
     scene: Scene,
-    dynamic: Dynamic,
+    course: OverTime,
     /// Whether nothing is left to do.
     is_finished: bool,
 }
@@ -124,23 +122,15 @@ fn read(request: &ResumeRequest, step: u64) -> Result<Read, Failure> {
         ));
     }
     let scene = scene_of(request, &record, &about)?;
-    let dynamic = require_motion(&scene, dir)?;
+    let course = OverTime::of(&scene.analysis, dir)?;
     require_same_meshes(&scene, &about)?;
-    if step > dynamic.n_steps {
-        return Err(anyhow!(
-            "the run is at step {step}, t = {} s, beyond dynamic.duration = {} s; expected a longer duration, or an \
-             earlier --step",
-            record.time,
-            dynamic.duration
-        )
-        .into());
-    }
+    course.require_step(step, &format!("{step}, t = {} s", record.time))?;
     Ok(Read {
-        is_finished: step == dynamic.n_steps && is_finished(dir, step)?,
+        is_finished: step == course.n_steps() && is_finished(dir, step)?,
         record,
         about,
         scene,
-        dynamic,
+        course,
     })
 }
 
@@ -309,22 +299,6 @@ fn require_same_file(path: &Path, overrides: &[String], stored: &str) -> Result<
          --stored-scene",
         path.display(),
         refused.join("; ")
-    )
-    .into())
-}
-
-fn require_motion(scene: &Scene, dir: &Path) -> Result<Dynamic, Failure> {
-    let kind = match &scene.analysis {
-        Analysis::Dynamic(dynamic) => return Ok(*dynamic),
-        Analysis::Static => "[static]",
-        Analysis::Sweep(_) => "[sweep]",
-        Analysis::Modes(_) => "[modes]",
-        Analysis::QuasiStatic(_) => "[quasi_static]",
-    };
-    Err(anyhow!(
-        "{} holds results of a {kind} scene; only a motion, a scene with [dynamic], can be resumed, run the scene \
-         again",
-        dir.display()
     )
     .into())
 }

@@ -6,7 +6,8 @@ use std::time::Instant;
 
 use anyhow::anyhow;
 use contact::{BearingGeometry, Side};
-use dynamics::{DynamicsError, Model, StaticSolution, StaticSolver};
+use dynamics::points::{PointStart, points_per_start};
+use dynamics::{Model, Pose, StaticSolution, StaticSolver};
 use results::disk::Forecast;
 use results::failure::{Failure, agree, of_all};
 use results::files::Files;
@@ -18,11 +19,13 @@ use results::summary::{Costs, Findings, Summary};
 use results::survey::{Survey, build_surveyed};
 use results::{console, fields, folder, seat};
 use scene::{Analysis, AnyScene, Scene, SeveralScene, have_same_rings, model_with_rings, rolling};
+use timer::Laps;
 
 use crate::instants::{self, Due, OverInstants, WrittenSteps};
 use crate::modes;
 use crate::motion;
 use crate::options::{Limits, SweepPart};
+use crate::points_ahead::{Grouping, PointAnswer, PointsAhead};
 use crate::progress::Progress;
 use crate::quasi_static;
 use crate::remarks::Remarks;
@@ -91,38 +94,69 @@ fn run_points(
     progress.stage("factoring the stiffness of the rings");
     let solver = StaticSolver::new(&model).map_err(Failure::solving)?;
     say_solvers(&solver, &progress);
-    let mut sweep = LoadCases {
-        scene,
-        points,
-        first,
-        placed: model.geometry,
-        model,
-        solver,
-        survey,
-        files: None,
-        solutions: Vec::new(),
-        written: WrittenSteps::default(),
-        dir,
+    let rings = model.rings.clone();
+    let solve = |n: u64, from: Option<&PointStart>| -> PointAnswer<Model> {
+        let model = model_with_rings(&points[n as usize].1, rings.clone())?;
+        let found = solver.point(&model, &Pose::default(), from);
+        Ok((found.map_err(Failure::solving)?, model))
     };
-    let ended = instants::run(&mut sweep, first, None, &mut progress);
-    progress.finish();
-    // Points that were solved get their summary, whatever came after them.
-    if let Some(files) = sweep.files.take() {
-        let (model, solver) = (&sweep.model, &sweep.solver);
-        let forecast = Side::BOTH.map(|side| solver.ring(side).map(|r| r.solver.memory));
-        let costs = agree(files.finish(read, Forecasts::at_rest(forecast, model), solver.laps(), start));
-        // A run that failed says why, not what its failure did to the files.
-        let costs = match (costs, &ended) {
-            (Err(_), Err(_)) => return ended,
-            (costs, _) => costs?,
+    let group = Grouping {
+        size: points_per_start(&model),
+        last: points.len() as u64 - 1,
+    };
+    let (sweep, ended) = rayon::in_place_scope(|scope| {
+        let mut sweep = LoadCases {
+            scene,
+            points,
+            first,
+            placed: model.geometry,
+            model,
+            ahead: PointsAhead::new(scope, &solve, group, None),
+            survey,
+            files: None,
+            solutions: Vec::new(),
+            written: WrittenSteps::default(),
+            dir,
         };
-        conclude(scene, (model, &sweep.solutions), &ended, remarks, &costs, dir)?;
-    }
+        let ended = instants::run(&mut sweep, first, None, &mut progress);
+        (sweep.solved(), ended)
+    });
+    progress.finish();
+    sum_up(scene, (sweep, &solver), &ended, remarks, (read, start), dir)?;
     ended
 }
 
+/// Closes the files and writes the summary of what was solved, whatever came after it; the scene was read until `read`,
+/// s, after `start`.
+fn sum_up(
+    scene: &Scene,
+    (sweep, solver): (SolvedCases, &StaticSolver),
+    ended: &Result<(), Failure>,
+    remarks: Remarks,
+    (read, start): (f64, Instant),
+    dir: &Path,
+) -> Result<(), Failure> {
+    let Some(files) = sweep.files else { return Ok(()) };
+    let forecast = Side::BOTH.map(|side| solver.ring(side).map(|r| r.solver.memory));
+    let forecast = Forecasts::of_points(forecast, &sweep.model, sweep.n_points);
+    let costs = agree(files.finish(read, forecast, solver.laps_with(&sweep.laps), start));
+    // A run that failed says why, not what its failure did to the files.
+    let costs = match (costs, ended) {
+        (Err(_), Err(_)) => return Ok(()),
+        (costs, _) => costs?,
+    };
+    conclude(
+        scene,
+        (&sweep.model, &sweep.solutions),
+        ended,
+        remarks,
+        &costs,
+        dir,
+    )
+}
+
 /// Load cases under way: their numbers stand for times.
-struct LoadCases<'a> {
+struct LoadCases<'a, 's, 'scope> {
     scene: &'a Scene,
     points: &'a [SweptScene],
     /// Number of the first of them in the whole sweep.
@@ -130,7 +164,7 @@ struct LoadCases<'a> {
     /// Geometry with which the rings were placed.
     placed: BearingGeometry,
     model: Model,
-    solver: StaticSolver,
+    ahead: PointsAhead<'s, 'scope, Model>,
     /// What the files begin with, until there are some.
     survey: Survey,
     /// The first solution makes the folder: a scene that has none leaves no files.
@@ -140,7 +174,28 @@ struct LoadCases<'a> {
     dir: &'a Path,
 }
 
-impl LoadCases<'_> {
+/// What has been solved of the load cases.
+struct SolvedCases {
+    /// That of the last of them.
+    model: Model,
+    files: Option<Files>,
+    solutions: Vec<Solved>,
+    /// Number of all load cases.
+    n_points: u64,
+    laps: Laps,
+}
+
+impl LoadCases<'_, '_, '_> {
+    fn solved(self) -> SolvedCases {
+        SolvedCases {
+            model: self.model,
+            files: self.files,
+            solutions: self.solutions,
+            n_points: self.points.len() as u64,
+            laps: self.ahead.laps,
+        }
+    }
+
     fn point(&self, n: u64) -> &SweptScene {
         &self.points[(n - self.first) as usize]
     }
@@ -155,7 +210,7 @@ impl LoadCases<'_> {
     }
 }
 
-impl OverInstants for LoadCases<'_> {
+impl OverInstants for LoadCases<'_, '_, '_> {
     fn due(&self) -> Due {
         Due {
             last: self.first + self.points.len() as u64 - 1,
@@ -186,18 +241,19 @@ impl OverInstants for LoadCases<'_> {
 
     fn advance(&mut self, n: u64, _progress: &mut Progress) -> Result<(), Failure> {
         let (value, point) = &self.points[(n - self.first) as usize];
-        self.model = model_with_rings(point, self.model.rings.clone())?;
-        let before = self.solutions.last().map(|s| &s.solution);
-        let found = self.solver.solve(&self.model, before);
         let done = self.solutions.len();
-        let solution = found.map_err(|error| of_all(at_point(error, self.scene, *value, self.dir, done)))?;
+        let found = self.ahead.take();
+        let (found, model) =
+            found.map_err(|failure| of_all(at_point(failure, self.scene, *value, self.dir, done)))?;
+        let solution = found.solution;
+        self.model = model;
         let snapshot = Snapshot::of_equilibrium(&solution, rolling(point).as_ref());
         if self.files.is_none() {
             let survey = std::mem::take(&mut self.survey);
             let files = Files::create(self.scene, &self.model, self.dir, &snapshot, survey, &[]);
             self.files = Some(agree(files)?);
         }
-        // Later points start from displacements of the contacts only; fields of a long sweep would fill the memory.
+        // Fields of a long sweep would fill the memory.
         if let Some(earlier) = self.solutions.last_mut() {
             earlier.solution.elastic = [None, None];
         }
@@ -373,9 +429,9 @@ pub fn stage_text(scene: &Scene, value: Option<f64>) -> String {
     }
 }
 
-fn at_point(error: DynamicsError, scene: &Scene, value: Option<f64>, dir: &Path, done: usize) -> Failure {
+fn at_point(failure: Failure, scene: &Scene, value: Option<f64>, dir: &Path, done: usize) -> Failure {
     let (Analysis::Sweep(sweep), Some(value)) = (&scene.analysis, value) else {
-        return Failure::solving(error);
+        return failure;
     };
     let context = match done {
         0 => format!("{} = {value}, the first point of the sweep", sweep.column),
@@ -385,5 +441,5 @@ fn at_point(error: DynamicsError, scene: &Scene, value: Option<f64>, dir: &Path,
             dir.display()
         ),
     };
-    Failure::solving(error).context(context)
+    failure.context(context)
 }

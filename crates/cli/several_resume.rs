@@ -8,8 +8,9 @@ use results::failure::Failure;
 
 use crate::options::Limits;
 use crate::several::require_same_list;
-use crate::several_state::{self, ListChanges, ListCourse};
+use crate::several_state::{self, ListChanges};
 use crate::shared::note_unshared;
+use crate::stored::OverTime;
 use crate::{several_motion, several_quasi_static};
 
 /// Goes on with a run in a folder of a list.
@@ -26,8 +27,8 @@ pub fn resume_run(
     require_same_list(&stored.scene)?;
     note_unshared(&stored.scene.bearings[0].scene);
     match stored.course {
-        ListCourse::Motion(dynamic) => several_motion::resume(stored, dynamic, limits, start)?,
-        ListCourse::Equilibria(settings) => several_quasi_static::resume(stored, settings, limits, start)?,
+        OverTime::Motion(dynamic) => several_motion::resume(stored, dynamic, limits, start)?,
+        OverTime::Equilibria(settings) => several_quasi_static::resume(stored, settings, limits, start)?,
     }
     print::line(format_args!("results: {}", dir.display()));
     Ok(())

@@ -13,11 +13,10 @@ use results::reduction::take_arrays;
 use results::several::{BEARINGS_TABLE, SCENE_TEXT};
 use results::state_arrays::{self, Arrays};
 use results::watch::Watch;
-use scene::{
-    Analysis, AnyScene, BearingOnShaft, Dynamic, MeshFiles, QuasiStatic, Scene, SeveralScene, difference,
-};
+use scene::{AnyScene, BearingOnShaft, MeshFiles, Scene, SeveralScene, difference};
 
 use crate::shared::{acquire, of_root};
+use crate::stored::OverTime;
 
 const SHAFT: &str = "list_shaft";
 const VELOCITY: &str = "list_shaft_velocity";
@@ -29,16 +28,9 @@ const NEWTON: &str = "list_newton_iterations";
 pub struct StoredList {
     pub dir: PathBuf,
     pub scene: SeveralScene,
-    pub course: ListCourse,
+    pub course: OverTime,
     pub step: u64,
     pub bearings: Vec<StoredBearing>,
-}
-
-/// What a list goes on with.
-#[derive(Clone, Copy)]
-pub enum ListCourse {
-    Motion(Dynamic),
-    Equilibria(QuasiStatic),
 }
 
 /// A step of one of them.
@@ -213,9 +205,13 @@ fn read_step(
         .get(OVERRIDES)
         .map_or(Vec::new(), |text| text.lines().map(str::to_string).collect());
     let scene = scene_of(text, &path, &before, changes)?;
-    let Some((course, n_steps)) = course_after(&scene, dir, step)? else {
+    let course = OverTime::of(&scene.analysis, dir)?;
+    let n_steps = course.n_steps();
+    course.require_step(step, &step.to_string())?;
+    if step == n_steps {
+        course.say_finished(dir, &format!("{step} of {n_steps}"));
         return Ok(None);
-    };
+    }
     let mut bearings = Vec::new();
     for (i, folder) in folders.iter().enumerate() {
         let now = &scene.bearings[i];
@@ -233,44 +229,6 @@ fn read_step(
         step,
         bearings,
     }))
-}
-
-/// The course that goes on after a step, and the number of its steps; None if nothing is left to do.
-fn course_after(scene: &SeveralScene, dir: &Path, step: u64) -> Result<Option<(ListCourse, u64)>, Failure> {
-    let (course, table, n_steps, duration) = match &scene.analysis {
-        Analysis::Dynamic(dynamic) => {
-            let course = ListCourse::Motion(*dynamic);
-            (course, "dynamic", dynamic.n_steps, dynamic.duration)
-        }
-        Analysis::QuasiStatic(settings) => {
-            let course = ListCourse::Equilibria(*settings);
-            (course, "quasi_static", settings.n_steps, settings.duration)
-        }
-        Analysis::Static | Analysis::Sweep(_) | Analysis::Modes(_) => {
-            return Err(anyhow!(
-                "{} holds results at rest; only a run over time, a scene with [dynamic] or [quasi_static], can be \
-                 resumed, run the scene again",
-                dir.display()
-            )
-            .into());
-        }
-    };
-    if step > n_steps {
-        return Err(anyhow!(
-            "the run is at step {step}, beyond {table}.duration = {duration} s; expected a longer duration, or an \
-             earlier --step"
-        )
-        .into());
-    }
-    if step == n_steps {
-        print::line(format_args!(
-            "nothing to do: {} has finished with step {step} of {n_steps}; a longer duration goes on from there, --set \
-             {table}.duration=...",
-            dir.display()
-        ));
-        return Ok(None);
-    }
-    Ok(Some((course, n_steps)))
 }
 
 /// The step of a bearing, whose scene and meshes must be those that the list has `now`; scenes are read at `path`, with

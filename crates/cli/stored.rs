@@ -1,18 +1,89 @@
-//! A stored step that a motion goes on from.
+//! A stored step that a run over time goes on from.
 
 use std::collections::BTreeMap;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use anyhow::{Context, anyhow};
 use checkpoint::{FolderLock, Stamps, StateArray, StepRecord};
+use comm::print;
 use dynamics::motion::{Motion, MotionState};
 use results::failure::Failure;
 use results::reduction::take_arrays;
 use results::state_arrays::{self, Arrays};
 use results::watch::Watch;
+use scene::{Analysis, Dynamic, QuasiStatic};
 
 /// Array of a step file that counts Newton's iterations since the start of the run.
 const NEWTON: &str = "newton_iterations";
+
+/// What goes on from a step.
+#[derive(Clone, Copy)]
+pub enum OverTime {
+    Motion(Dynamic),
+    Equilibria(QuasiStatic),
+}
+
+impl OverTime {
+    /// That of an analysis, whose results are in a folder.
+    pub fn of(analysis: &Analysis, dir: &Path) -> Result<OverTime, Failure> {
+        let kind = match analysis {
+            Analysis::Dynamic(dynamic) => return Ok(OverTime::Motion(*dynamic)),
+            Analysis::QuasiStatic(settings) => return Ok(OverTime::Equilibria(*settings)),
+            Analysis::Static => "[static]",
+            Analysis::Sweep(_) => "[sweep]",
+            Analysis::Modes(_) => "[modes]",
+        };
+        Err(anyhow!(
+            "{} holds results of a {kind} scene; only a run over time, a scene with [dynamic] or [quasi_static], can \
+             be resumed, run the scene again",
+            dir.display()
+        )
+        .into())
+    }
+
+    /// The table of the scene that says how long it goes.
+    pub fn table(&self) -> &'static str {
+        match self {
+            OverTime::Motion(_) => "dynamic",
+            OverTime::Equilibria(_) => "quasi_static",
+        }
+    }
+
+    /// Number of its last step.
+    pub fn n_steps(&self) -> u64 {
+        match self {
+            OverTime::Motion(dynamic) => dynamic.n_steps,
+            OverTime::Equilibria(settings) => settings.n_steps,
+        }
+    }
+
+    /// Refuses a step that comes after its end; `at` is the step as a message has it.
+    pub fn require_step(&self, step: u64, at: &str) -> Result<(), Failure> {
+        if step <= self.n_steps() {
+            return Ok(());
+        }
+        let duration = match self {
+            OverTime::Motion(dynamic) => dynamic.duration,
+            OverTime::Equilibria(settings) => settings.duration,
+        };
+        Err(anyhow!(
+            "the run is at step {at}, beyond {}.duration = {duration} s; expected a longer duration, or an earlier \
+             --step",
+            self.table()
+        )
+        .into())
+    }
+
+    /// Says that a run has finished with its last step at a place.
+    pub fn say_finished(&self, dir: &Path, at: &str) {
+        print::line(format_args!(
+            "nothing to do: {} has finished with step {at}; a longer duration goes on from there, --set \
+             {}.duration=...",
+            dir.display(),
+            self.table()
+        ));
+    }
+}
 
 /// A step to go on from.
 pub struct Stored {

@@ -19,6 +19,7 @@ pub mod system;
 pub mod displacements;
 pub mod equilibrium;
 pub mod loading;
+pub mod points;
 pub mod quasi_static;
 pub mod solution;
 pub mod statics;

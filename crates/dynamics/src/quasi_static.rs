@@ -10,6 +10,7 @@
 use crate::error::DynamicsError;
 use crate::kinematics::Rolling;
 use crate::model::Model;
+use crate::points::{PointStart, SolvedPoint};
 use crate::pose::Pose;
 use crate::solution::StaticSolution;
 use crate::statics::StaticSolver;
@@ -53,5 +54,10 @@ impl<'a> QuasiStaticMotion<'a> {
     ) -> Result<StaticSolution, DynamicsError> {
         let pose = self.pose(step);
         self.solver.solve_at(self.model, &pose, earlier)
+    }
+
+    /// The same as a point of its own, which other threads may have beside others.
+    pub fn point(&self, step: u64, start: Option<&PointStart>) -> Result<SolvedPoint, DynamicsError> {
+        self.solver.point(self.model, &self.pose(step), start)
     }
 }

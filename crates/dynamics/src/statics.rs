@@ -58,12 +58,13 @@ pub type ContactColumns = [Option<Vec<f64>>; 2];
 
 /// Factored rings of a model, ready for any number of load cases.
 pub struct StaticSolver {
-    rings: [Option<StaticRing>; 2],
+    /// Several solvers of one run may have the same rings.
+    rings: [Option<Arc<StaticRing>>; 2],
     columns: ContactColumns,
     /// Wall time so far, effects apart.
     pub timing: Laps,
     /// Wall time so far, by effect.
-    pub costs: SharedLaps,
+    pub costs: Arc<SharedLaps>,
 }
 
 /// What the ring on `side` is made with.
@@ -99,10 +100,10 @@ impl StaticSolver {
             timing.merge(&ring.solver.laps);
         }
         Ok(StaticSolver {
-            rings,
+            rings: rings.map(|ring| ring.map(Arc::new)),
             columns: ContactColumns::default(),
             timing,
-            costs: costs::of_effects(model),
+            costs: Arc::new(costs::of_effects(model)),
         })
     }
 
@@ -112,8 +113,24 @@ impl StaticSolver {
             rings: [None, None],
             columns: ContactColumns::default(),
             timing: Laps::default(),
-            costs: costs::of_effects(model),
+            costs: Arc::new(costs::of_effects(model)),
         }
+    }
+
+    /// Another solver with the same rings and these tangents of the contacts; its time is its own, that of effects goes
+    /// to the same costs.
+    pub fn beside(&self, columns: ContactColumns) -> StaticSolver {
+        StaticSolver {
+            rings: self.rings.clone(),
+            columns,
+            timing: Laps::default(),
+            costs: Arc::clone(&self.costs),
+        }
+    }
+
+    /// The tangents of the contacts and the wall time so far, effects apart.
+    pub fn into_point(self) -> (ContactColumns, Laps) {
+        (self.columns, self.timing)
     }
 
     /// Exchanges the compliance of the contacts, which is a tangent only, for that of another bearing with the same
@@ -124,14 +141,20 @@ impl StaticSolver {
 
     /// Wall time so far, effects among it.
     pub fn laps(&self) -> Laps {
+        self.laps_with(&Laps::default())
+    }
+
+    /// The same with that of points which have been solved beside.
+    pub fn laps_with(&self, points: &Laps) -> Laps {
         let mut laps = self.timing.clone();
+        laps.merge(points);
         laps.merge_into(EFFECTS, &self.costs.laps());
         laps
     }
 
     /// The ring of one side.
     pub fn ring(&self, side: Side) -> Option<&StaticRing> {
-        self.rings[side.index()].as_ref()
+        self.rings[side.index()].as_deref()
     }
 
     /// What both rings hold.

@@ -224,8 +224,12 @@ fn state_bytes(scene: &Scene, model: &Model) -> u64 {
             rings.map(ring_bytes).sum::<u64>() + BALL_BYTES * model.geometry.n_balls as u64
         }
         Analysis::Modes(_) => 3 * 8,
-        Analysis::Static | Analysis::Sweep(_) | Analysis::QuasiStatic(_) => {
-            8 * (5 + 2 * model.geometry.n_balls as u64)
+        Analysis::Static | Analysis::Sweep(_) => 8 * (5 + 2 * model.geometry.n_balls as u64),
+        Analysis::QuasiStatic(_) => {
+            let balls = 2 * model.geometry.n_balls as u64;
+            let rings = model.rings.iter().flatten().count() as u64;
+            // Displacements and tangents of the contacts, of the step and of that from which the next ones start.
+            2 * 8 * (6 + balls + rings * (balls + balls * balls))
         }
     }
 }

@@ -10,6 +10,7 @@ use comm::Communicator;
 use contact::Side;
 use dynamics::modes::basis_sizes;
 use dynamics::motion::Motion;
+use dynamics::points::{most_ahead, points_per_start, threads_of_points};
 use dynamics::statics::settings;
 use dynamics::{
     Model, MotionMemory, Numbers, Prepared, RingMemory, RingModel, forecast_motion_peak, forecast_peak,
@@ -44,6 +45,15 @@ impl Forecasts {
         }
     }
 
+    /// Of a number of points of a model, of which several are solved at the same time.
+    pub fn of_points(rings: [Option<RingMemory>; 2], model: &Model, n_points: u64) -> Forecasts {
+        let peak = forecast_peak(rings, rings_at_once()) + points_bytes(rings, model, n_points);
+        Forecasts {
+            rings,
+            peak: Some(beside_rings(peak, model)),
+        }
+    }
+
     /// Of a motion that begins with `rings` at rest.
     pub fn of_motion(rings: [Option<RingMemory>; 2], motion: &Motion<'_>, dynamic: &Dynamic) -> Forecasts {
         let start = forecast_peak(rings, rings_at_once());
@@ -53,6 +63,25 @@ impl Forecasts {
             peak: steps.map(|steps| beside_rings(steps.max(start), motion.model())),
         }
     }
+}
+
+/// What is held beside the rings when points are solved ahead of the one that is written, bytes: displacements of all
+/// of them, load and displacements under way on every thread, and there, beyond two, the columns of a ring.
+fn points_bytes(rings: [Option<RingMemory>; 2], model: &Model, n_points: u64) -> usize {
+    let n_threads = threads_of_points();
+    if n_threads == 1 || points_per_start(model) == 1 {
+        return 0;
+    }
+    let after_first = usize::try_from(n_points.saturating_sub(1)).unwrap_or(usize::MAX);
+    let (ahead, at_once) = (most_ahead(n_threads).min(after_first), n_threads.min(after_first));
+    let flexible = model.rings.iter().flatten();
+    let field: usize = flexible.map(|ring| size_of::<f64>() * ring.mesh.n_dofs()).sum();
+    let columns = rings
+        .iter()
+        .flatten()
+        .map(|ring| ring.columns.saturating_sub(ring.kept))
+        .max();
+    (ahead + 2 * at_once) * field + at_once.saturating_sub(2) * columns.unwrap_or(0)
 }
 
 /// The peak of rings with the surfaces of the model. Where these are made they are held three times, before the rings
@@ -77,7 +106,13 @@ pub fn forecast(
         }
         _ => None,
     };
-    (beside_rings(forecast_peak(rings, rings_at_once()), model), steps)
+    let points = match analysis {
+        Analysis::Sweep(sweep) => sweep.points.len() as u64,
+        Analysis::QuasiStatic(quasi) => 1 + quasi.n_steps,
+        Analysis::Static | Analysis::Dynamic(_) | Analysis::Modes(_) => 1,
+    };
+    let rest = forecast_peak(rings, rings_at_once()) + points_bytes(rings, model, points);
+    (beside_rings(rest, model), steps)
 }
 
 /// Forecast of the largest resident memory of the natural modes of a list, bytes, from the models of all bearings and

@@ -8,6 +8,7 @@ use checkpoint::StateArray;
 use contact::Side;
 use dynamics::Model;
 use dynamics::displacements::Displacements;
+use dynamics::points::PointStart;
 use dynamics::statics::ContactColumns;
 
 use super::state_arrays::Arrays;
@@ -17,6 +18,8 @@ const BALLS: &str = "balls";
 const SEAT: &str = "seat";
 const GROOVES: [&str; 2] = ["grooves_inner", "grooves_outer"];
 const COLUMNS: [&str; 2] = ["columns_inner", "columns_outer"];
+/// Before the names of the equilibrium from which the next ones start, where it is an earlier one.
+const START: &str = "start_";
 
 /// The arrays of an equilibrium: displacements, m and rad, and inverse compliances of the contacts, N/m.
 pub fn store(displacements: &Displacements, columns: &ContactColumns) -> Arrays {
@@ -42,6 +45,33 @@ pub fn store(displacements: &Displacements, columns: &ContactColumns) -> Arrays 
     }
     let array = |(name, values): (&str, Vec<f64>)| (name.to_string(), StateArray::Real(values));
     all.into_iter().map(array).collect()
+}
+
+/// The same of a point, and of an earlier one from which the next points start.
+pub fn store_point(own: &PointStart, start: Option<&PointStart>) -> Arrays {
+    let mut arrays = store(&own.displacements, &own.columns);
+    if let Some(start) = start {
+        let earlier = store(&start.displacements, &start.columns).into_iter();
+        arrays.extend(earlier.map(|(name, values)| (format!("{START}{name}"), values)));
+    }
+    arrays
+}
+
+/// What [`store_point`] has stored of a model.
+pub fn load_point(arrays: Arrays, model: &Model) -> anyhow::Result<(PointStart, Option<PointStart>)> {
+    let (earlier, own): (Arrays, Arrays) = arrays.into_iter().partition(|(name, _)| name.starts_with(START));
+    let earlier: Arrays = earlier
+        .into_iter()
+        .map(|(name, values)| (name[START.len()..].to_string(), values))
+        .collect();
+    let load = |arrays: Arrays| {
+        load(arrays, model).map(|(displacements, columns)| PointStart {
+            displacements,
+            columns,
+        })
+    };
+    let start = (!earlier.is_empty()).then(|| load(earlier)).transpose()?;
+    Ok((load(own)?, start))
 }
 
 /// What was stored of an equilibrium of a model, bit for bit; fails where an array is missing, unknown or of another

@@ -1,0 +1,262 @@
+//! Points of a run of one bearing, solved on all threads ahead of the one that is written.
+//!
+//! What a point starts from follows from its number ([`dynamics::points`]), so that the bits do not depend on what is
+//! solved at the same time. The caller takes the points in order. Of those that it has not taken yet at most
+//! [`most_ahead`] are solved or under way, which bounds the memory. On one thread, and where ranks share the rings,
+//! each point is solved when it is asked for.
+
+use std::collections::{BTreeMap, VecDeque};
+use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
+use std::sync::Arc;
+use std::sync::mpsc::{Receiver, Sender, channel};
+use std::thread;
+
+use dynamics::points::{PointStart, SolvedPoint, again_from, most_ahead, threads_of_points};
+use rayon::Scope;
+use results::failure::Failure;
+use timer::Laps;
+
+/// A point with what else was made for it.
+pub type PointAnswer<M> = Result<(SolvedPoint, M), Failure>;
+
+/// Finds the equilibrium of a point, the first is 0, from another one.
+pub type PointSolver<'a, M> = dyn Fn(u64, Option<&PointStart>) -> PointAnswer<M> + Sync + 'a;
+
+/// What a run goes on from.
+#[derive(Clone)]
+pub struct Taken {
+    /// The last point that was taken.
+    pub n: u64,
+    /// What it leaves.
+    pub before: PointStart,
+    /// What the next ones start from.
+    pub start: PointStart,
+}
+
+/// Points that start from the same one, in order.
+#[derive(Clone, Copy)]
+pub struct Grouping {
+    /// How many these are.
+    pub size: u64,
+    /// The last of all points.
+    pub last: u64,
+}
+
+/// The points ahead of the one that was taken last.
+pub struct PointsAhead<'s, 'scope, M> {
+    /// Where points are solved at the same time; None: when they are asked for.
+    scope: Option<&'s Scope<'scope>>,
+    solve: &'scope PointSolver<'scope, M>,
+    group: Grouping,
+    taken: Option<Taken>,
+    /// The last point whose followers wait or are under way.
+    followed: Option<u64>,
+    /// Points whose start is known, in the order in which they are solved.
+    waiting: VecDeque<(u64, Arc<PointStart>)>,
+    /// Points solved or under way.
+    ahead: usize,
+    found: BTreeMap<u64, thread::Result<PointAnswer<M>>>,
+    answers: (Sender<NumberedAnswer<M>>, Receiver<NumberedAnswer<M>>),
+    /// Wall time of all points taken, summed over threads.
+    pub laps: Laps,
+}
+
+type NumberedAnswer<M> = (u64, thread::Result<PointAnswer<M>>);
+
+impl<'s, 'scope, M: Send> PointsAhead<'s, 'scope, M> {
+    /// Those of a run from its beginning, or of one that goes on.
+    pub fn new(
+        scope: &'s Scope<'scope>,
+        solve: &'scope PointSolver<'scope, M>,
+        group: Grouping,
+        taken: Option<Taken>,
+    ) -> PointsAhead<'s, 'scope, M> {
+        let at_once = threads_of_points() > 1 && group.size > 1;
+        let mut points = PointsAhead {
+            scope: at_once.then_some(scope),
+            solve,
+            group,
+            taken: None,
+            followed: None,
+            waiting: VecDeque::new(),
+            ahead: 0,
+            found: BTreeMap::new(),
+            answers: channel(),
+            laps: Laps::default(),
+        };
+        if let Some(taken) = taken {
+            let first = taken.n / group.size * group.size;
+            points.taken = Some(taken.clone());
+            points.follow(first, taken.start);
+        }
+        points
+    }
+
+    /// What a run goes on from after the last point that was taken, if there is one.
+    pub fn taken(&self) -> Option<&Taken> {
+        self.taken.as_ref()
+    }
+
+    /// The next point. After a failure there is none.
+    pub fn take(&mut self) -> PointAnswer<M> {
+        let n = self.taken.as_ref().map_or(0, |taken| taken.n + 1);
+        let first = match n > 0 && self.scope.is_some() {
+            true => self.wait_for(n),
+            false => (self.solve)(n, self.taken.as_ref().map(|taken| &taken.start)),
+        };
+        let again = again_from(n, self.group.size).and(self.taken.as_ref());
+        let (point, made) = match (first, again) {
+            (Err(_), Some(taken)) => (self.solve)(n, Some(&taken.before))?,
+            (first, _) => first?,
+        };
+        self.laps.merge(&point.laps);
+        let before = point.start();
+        let start = match self.taken.take() {
+            Some(taken) if !n.is_multiple_of(self.group.size) => taken.start,
+            _ => before.clone(),
+        };
+        if n.is_multiple_of(self.group.size) {
+            self.follow(n, start.clone());
+        }
+        self.taken = Some(Taken { n, before, start });
+        self.hand_out();
+        Ok((point, made))
+    }
+
+    /// The points that start from point `n` may be solved. The last of them is the first: more points start from it.
+    fn follow(&mut self, n: u64, start: PointStart) {
+        if self.scope.is_none() || self.followed.is_some_and(|followed| followed >= n) {
+            return;
+        }
+        self.followed = Some(n);
+        let next = self.taken.as_ref().map_or(n, |taken| taken.n.max(n)) + 1;
+        let (end, start) = (n + self.group.size, Arc::new(start));
+        let others = next..end.min(self.group.last + 1);
+        let order = (end <= self.group.last).then_some(end).into_iter().chain(others);
+        self.waiting
+            .extend(order.map(|point| (point, Arc::clone(&start))));
+        self.hand_out();
+    }
+
+    /// Has points solved while not too many are ahead.
+    fn hand_out(&mut self) {
+        let Some(scope) = self.scope else { return };
+        while self.ahead < most_ahead(threads_of_points())
+            && let Some((n, start)) = self.waiting.pop_front()
+        {
+            let (solve, answer) = (self.solve, self.answers.0.clone());
+            self.ahead += 1;
+            scope.spawn(move |_| {
+                let found = catch_unwind(AssertUnwindSafe(|| solve(n, Some(&start))));
+                // Nobody waits for it where the run has ended early.
+                let _ = answer.send((n, found));
+            });
+        }
+    }
+
+    /// A point that is under way or waits.
+    fn wait_for(&mut self, n: u64) -> PointAnswer<M> {
+        loop {
+            while let Ok(found) = self.answers.1.try_recv() {
+                self.note(found);
+            }
+            if let Some(found) = self.found.remove(&n) {
+                self.ahead -= 1;
+                return found.unwrap_or_else(|panic| resume_unwind(panic));
+            }
+            let found = self.answers.1.recv();
+            self.note(found.expect("a sender is kept here"));
+        }
+    }
+
+    fn note(&mut self, (n, found): NumberedAnswer<M>) {
+        if n.is_multiple_of(self.group.size)
+            && let Ok(Ok((point, _))) = &found
+        {
+            self.follow(n, point.start());
+        }
+        self.found.insert(n, found);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::PathBuf;
+    use std::sync::Mutex;
+
+    use anyhow::anyhow;
+    use dynamics::kinematics::{Rolling, Speed};
+    use dynamics::points::points_per_start;
+    use dynamics::{Model, QuasiStaticMotion};
+    use scene::{Scene, build_model};
+
+    use super::*;
+
+    const LAST: u64 = 19;
+
+    fn rigid() -> Model {
+        let path = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("scenes/7010c_radial_sweep.toml");
+        let rigid = ["inner.flexible=false", "outer.flexible=false"].map(String::from);
+        build_model(&Scene::load(&path, &rigid).unwrap()).unwrap().0
+    }
+
+    /// Bits of all points where those of `hard` have no equilibrium but from the point just before them, and from which
+    /// displacements each hard one was found.
+    fn bits(n_threads: usize, hard: &[u64]) -> (Vec<String>, Vec<String>) {
+        let model = rigid();
+        let rolling = Rolling::new(&model.geometry, Speed::constant(188.5), [0.0; 2]);
+        let bearing = QuasiStaticMotion::new(&model, rolling, 2e-4).unwrap();
+        let (all, found) = (Mutex::new(BTreeMap::new()), Mutex::new(Vec::new()));
+        let solve = |n: u64, from: Option<&PointStart>| -> PointAnswer<()> {
+            let text = format!("{from:?}");
+            let before = n
+                .checked_sub(1)
+                .and_then(|before| all.lock().unwrap().get(&before).cloned());
+            if hard.contains(&n) && before.is_none_or(|before| before != text) {
+                return Err(Failure::Numerical(anyhow!("too far")));
+            }
+            let point = bearing.point(n, from).map_err(Failure::solving)?;
+            all.lock()
+                .unwrap()
+                .insert(n, format!("{:?}", Some(point.start())));
+            if hard.contains(&n) {
+                found.lock().unwrap().push(text);
+            }
+            Ok((point, ()))
+        };
+        let group = Grouping {
+            size: points_per_start(&model),
+            last: LAST,
+        };
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(n_threads)
+            .build()
+            .unwrap();
+        let take_all = || {
+            rayon::in_place_scope(|scope| {
+                let mut ahead = PointsAhead::new(scope, &solve, group, None);
+                (0..=LAST).for_each(|_| drop(ahead.take().unwrap()));
+            });
+        };
+        pool.install(take_all);
+        (
+            all.into_inner().unwrap().into_values().collect(),
+            found.into_inner().unwrap(),
+        )
+    }
+
+    /// Wrong: a point that is too far from its start would end the run, or start from what happens to be there. Points
+    /// 5 and 8, from which others start, are found from 4 and 7 on any number of threads.
+    #[test]
+    fn a_point_too_far_from_its_start_starts_from_the_one_before() {
+        let (alone, found) = bits(1, &[5, 8]);
+        assert_eq!(alone.len(), 20);
+        assert_eq!(found, [alone[4].clone(), alone[7].clone()]);
+        for n_threads in [2, 4] {
+            assert!(
+                bits(n_threads, &[5, 8]) == (alone.clone(), found.clone()),
+                "{n_threads} threads"
+            );
+        }
+    }
+}
