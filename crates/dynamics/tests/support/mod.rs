@@ -9,7 +9,7 @@ use dynamics::{ContactMode, ContactSettings, Model, ShaftDof, StaticSolution, St
 use fem::Material;
 use input::Schedule;
 
-/// The least patch of a scene that asks for none.
+/// The least patch of a scene of quadratic elements that asks for none.
 pub const LEAST_PATCH: LeastSize = LeastSize {
     spacings: 2.0,
     rolling: 1.89e-3,
