@@ -196,12 +196,15 @@ fn equilibria_cut_at_any_step_continue_bit_for_bit() {
             ("9", "2"),
             ("20", "1"),
             ("39", "2"),
+            ("40", "1"),
         ],
     );
-    for cut in ["cut0", "cut20"] {
+    for cut in ["cut0", "cut20", "cut40"] {
         let [whole, cut] = ["whole", cut].map(|out| summary(&dir, out));
-        assert_eq!(whole["iterations"], cut["iterations"]);
-        assert_eq!(whole["warnings"], cut["warnings"]);
+        for key in ["iterations", "warnings", "shaft", "balls"] {
+            assert!(!whole[key].is_null(), "{key}");
+            assert_eq!(whole[key], cut[key], "{key}");
+        }
     }
     let again = resumed(&dir, &["whole"]);
     let expected = "nothing to do: whole has finished with step 40 of 40, t = 8.000000e-3 s; a longer duration goes on \
@@ -249,7 +252,8 @@ fn killed_and_stopped_equilibria_go_on_bit_for_bit() {
     assert_same_run(&dir, "whole", "cut");
 }
 
-/// Wrong: a step would not say where the next equilibria start, or say it twice; a resumed run would have other loads.
+/// Wrong: a step would not say where the next equilibria start or what it was found from, or say it twice; a resumed
+/// run would have other loads.
 #[test]
 fn a_step_holds_where_the_next_equilibria_start() {
     let dir = small_turning();
@@ -258,11 +262,13 @@ fn a_step_holds_where_the_next_equilibria_start() {
         let path = dir.path("out").join(step_file_name(step));
         checkpoint::read_step(&path).unwrap().state
     };
-    let [ahead, of_39, of_32] = [40, 39, 32].map(state);
+    let [ahead, of_39, of_32, of_24] = [40, 39, 32, 24].map(state);
     assert!(!ahead.contains_key("start_shaft") && !of_32.contains_key("start_shaft"));
     for name in ["shaft", "balls", "seat"] {
         let start = &of_39[&format!("start_{name}")];
         assert_eq!(format!("{start:?}"), format!("{:?}", of_32[name]), "{name}");
+        let from = &of_32[&format!("from_{name}")];
+        assert_eq!(format!("{from:?}"), format!("{:?}", of_24[name]), "{name}");
     }
     let load = "effects.axial_force.value=\"1 kN\"";
     refused(

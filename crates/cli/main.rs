@@ -137,7 +137,7 @@ enum Command {
         #[command(flatten)]
         limits: Limits,
     },
-    /// Goes on with a motion from its newest whole step, to the same bits as if it had not been interrupted.
+    /// Goes on with a run over time from its newest whole step, to the same bits as if it had not been interrupted.
     Resume(ResumeRequest),
     /// Says what a result folder, a step file or a mesh file holds.
     Info {

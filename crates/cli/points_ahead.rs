@@ -8,6 +8,7 @@
 use std::collections::{BTreeMap, VecDeque};
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::thread;
 
@@ -31,6 +32,8 @@ pub struct Taken {
     pub before: PointStart,
     /// What the next ones start from.
     pub start: PointStart,
+    /// What it was found from itself; None: from zero displacement.
+    pub from: Option<PointStart>,
 }
 
 /// Points that start from the same one, in order.
@@ -57,8 +60,23 @@ pub struct PointsAhead<'s, 'scope, M> {
     ahead: usize,
     found: BTreeMap<u64, thread::Result<PointAnswer<M>>>,
     answers: (Sender<NumberedAnswer<M>>, Receiver<NumberedAnswer<M>>),
+    /// Set once no more points are asked for.
+    has_ended: Arc<AtomicBool>,
     /// Wall time of all points taken, summed over threads.
     pub laps: Laps,
+}
+
+impl<M> Drop for PointsAhead<'_, '_, M> {
+    fn drop(&mut self) {
+        self.end();
+    }
+}
+
+impl<M> PointsAhead<'_, '_, M> {
+    /// No more points are asked for: those that nobody has begun are not solved.
+    pub fn end(&self) {
+        self.has_ended.store(true, Ordering::Relaxed);
+    }
 }
 
 type NumberedAnswer<M> = (u64, thread::Result<PointAnswer<M>>);
@@ -82,6 +100,7 @@ impl<'s, 'scope, M: Send> PointsAhead<'s, 'scope, M> {
             ahead: 0,
             found: BTreeMap::new(),
             answers: channel(),
+            has_ended: Arc::default(),
             laps: Laps::default(),
         };
         if let Some(taken) = taken {
@@ -105,10 +124,14 @@ impl<'s, 'scope, M: Send> PointsAhead<'s, 'scope, M> {
             false => (self.solve)(n, self.taken.as_ref().map(|taken| &taken.start)),
         };
         let again = again_from(n, self.group.size).and(self.taken.as_ref());
-        let (point, made) = match (first, again) {
-            (Err(_), Some(taken)) => (self.solve)(n, Some(&taken.before))?,
-            (first, _) => first?,
+        let ((point, made), is_again) = match (first, again) {
+            (Err(_), Some(taken)) => ((self.solve)(n, Some(&taken.before))?, true),
+            (first, _) => (first?, false),
         };
+        let from = self.taken.as_ref().map(|taken| match is_again {
+            true => taken.before.clone(),
+            false => taken.start.clone(),
+        });
         self.laps.merge(&point.laps);
         let before = point.start();
         let start = match self.taken.take() {
@@ -118,7 +141,12 @@ impl<'s, 'scope, M: Send> PointsAhead<'s, 'scope, M> {
         if n.is_multiple_of(self.group.size) {
             self.follow(n, start.clone());
         }
-        self.taken = Some(Taken { n, before, start });
+        self.taken = Some(Taken {
+            n,
+            before,
+            start,
+            from,
+        });
         self.hand_out();
         Ok((point, made))
     }
@@ -145,8 +173,12 @@ impl<'s, 'scope, M: Send> PointsAhead<'s, 'scope, M> {
             && let Some((n, start)) = self.waiting.pop_front()
         {
             let (solve, answer) = (self.solve, self.answers.0.clone());
+            let has_ended = Arc::clone(&self.has_ended);
             self.ahead += 1;
             scope.spawn(move |_| {
+                if has_ended.load(Ordering::Relaxed) {
+                    return;
+                }
                 let found = catch_unwind(AssertUnwindSafe(|| solve(n, Some(&start))));
                 // Nobody waits for it where the run has ended early.
                 let _ = answer.send((n, found));

@@ -13,7 +13,7 @@ use comm::print;
 use contact::Side;
 use dynamics::kinematics::{Rolling, Speed};
 use dynamics::points::{PointStart, points_per_start};
-use dynamics::{DynamicsError, Model, QuasiStaticMotion, StaticSolution};
+use dynamics::{Model, QuasiStaticMotion, StaticSolution};
 use results::disk::Forecast;
 use results::failure::{Failure, agree};
 use results::files::{Files, ResumedFrom, say_folder};
@@ -106,7 +106,9 @@ pub fn resume(
         warnings,
         reduction,
     } = agree(restore(&stored, &model))?;
-    let last = found_again(&bearing, &taken, group).map_err(Failure::solving)?;
+    // What the step shows: nothing is written of it, unless no step follows.
+    let (last, ()) = point(&bearing, taken.n, taken.from.as_ref())?;
+    let last = last.solution;
     let rolling = rolling(scene);
     let shown = Snapshot::of_equilibrium(&last, rolling.as_ref());
     let from = ResumedFrom {
@@ -191,21 +193,6 @@ fn point(bearing: &QuasiStaticMotion<'_>, n: u64, from: Option<&PointStart>) -> 
     Ok((bearing.point(n, from).map_err(Failure::solving)?, ()))
 }
 
-/// What the step from which a run goes on shows. Nothing is written of it, and nothing starts from it.
-fn found_again(
-    bearing: &QuasiStaticMotion<'_>,
-    taken: &Taken,
-    group: Grouping,
-) -> Result<StaticSolution, DynamicsError> {
-    let is_start = taken.n.is_multiple_of(group.size);
-    let from_start = bearing
-        .point(taken.n, Some(&taken.start))
-        .ok()
-        .filter(|_| !is_start);
-    let found = from_start.map_or_else(|| bearing.point(taken.n, Some(&taken.before)), Ok);
-    Ok(found?.solution)
-}
-
 /// What has been counted of a run.
 #[derive(Clone, Copy, Default)]
 struct Counts {
@@ -227,7 +214,8 @@ struct RestoredPoint {
 /// The arrays of a step file.
 fn arrays(taken: &Taken, counts: Counts, warnings: &[String]) -> Arrays {
     let start = (taken.start != taken.before).then_some(&taken.start);
-    let mut arrays = rest_state::store_point(&taken.before, start);
+    let from = taken.from.as_ref().filter(|from| **from != taken.start);
+    let mut arrays = rest_state::store_point(&taken.before, [start, from]);
     let Counts {
         rounds,
         newton,
@@ -272,11 +260,13 @@ fn restore(stored: &Stored, model: &Model) -> Result<RestoredPoint, Failure> {
         }
         _ => Vec::new(),
     };
-    let (before, start) = rest_state::load_point(arrays, model).with_context(at)?;
+    let (before, [start, from]) = rest_state::load_point(arrays, model).with_context(at)?;
+    let start = start.unwrap_or_else(|| before.clone());
     Ok(RestoredPoint {
         taken: Taken {
             n: stored.step,
-            start: start.unwrap_or_else(|| before.clone()),
+            from: from.or_else(|| (stored.step > 0).then(|| start.clone())),
+            start,
             before,
         },
         counts: Counts {
@@ -336,6 +326,7 @@ impl QuasiStaticRun<'_, '_, '_> {
         let (mut clock, first) = (Stopwatch::start(), self.step);
         let mut stop = agree(Stop::listen(start, limits.wall_time).map_err(Failure::from))?;
         let ended = instants::run(&mut self, first + 1, Some(&mut stop), &mut progress);
+        self.ahead.end();
         let seconds = clock.lap();
         progress.finish();
         let (scene, model, settings) = (self.scene, self.model, self.settings);

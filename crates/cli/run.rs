@@ -186,13 +186,13 @@ struct SolvedCases {
 }
 
 impl LoadCases<'_, '_, '_> {
-    fn solved(self) -> SolvedCases {
+    fn solved(mut self) -> SolvedCases {
         SolvedCases {
             model: self.model,
             files: self.files,
             solutions: self.solutions,
             n_points: self.points.len() as u64,
-            laps: self.ahead.laps,
+            laps: std::mem::take(&mut self.ahead.laps),
         }
     }
 

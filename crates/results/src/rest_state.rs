@@ -18,8 +18,8 @@ const BALLS: &str = "balls";
 const SEAT: &str = "seat";
 const GROOVES: [&str; 2] = ["grooves_inner", "grooves_outer"];
 const COLUMNS: [&str; 2] = ["columns_inner", "columns_outer"];
-/// Before the names of the equilibrium from which the next ones start, where it is an earlier one.
-const START: &str = "start_";
+/// Before the names of earlier equilibria: from which the next ones start, and from which it was found.
+const EARLIER: [&str; 2] = ["start_", "from_"];
 
 /// The arrays of an equilibrium: displacements, m and rad, and inverse compliances of the contacts, N/m.
 pub fn store(displacements: &Displacements, columns: &ContactColumns) -> Arrays {
@@ -47,31 +47,36 @@ pub fn store(displacements: &Displacements, columns: &ContactColumns) -> Arrays 
     all.into_iter().map(array).collect()
 }
 
-/// The same of a point, and of an earlier one from which the next points start.
-pub fn store_point(own: &PointStart, start: Option<&PointStart>) -> Arrays {
+/// The same of a point, and of earlier ones: from which the next points start, and from which it was found.
+pub fn store_point(own: &PointStart, earlier: [Option<&PointStart>; 2]) -> Arrays {
     let mut arrays = store(&own.displacements, &own.columns);
-    if let Some(start) = start {
-        let earlier = store(&start.displacements, &start.columns).into_iter();
-        arrays.extend(earlier.map(|(name, values)| (format!("{START}{name}"), values)));
+    for (prefix, earlier) in EARLIER.into_iter().zip(earlier) {
+        let stored = earlier.map(|earlier| store(&earlier.displacements, &earlier.columns));
+        let named = stored.into_iter().flatten();
+        arrays.extend(named.map(|(name, values)| (format!("{prefix}{name}"), values)));
     }
     arrays
 }
 
 /// What [`store_point`] has stored of a model.
-pub fn load_point(arrays: Arrays, model: &Model) -> anyhow::Result<(PointStart, Option<PointStart>)> {
-    let (earlier, own): (Arrays, Arrays) = arrays.into_iter().partition(|(name, _)| name.starts_with(START));
-    let earlier: Arrays = earlier
-        .into_iter()
-        .map(|(name, values)| (name[START.len()..].to_string(), values))
-        .collect();
+pub fn load_point(mut own: Arrays, model: &Model) -> anyhow::Result<(PointStart, [Option<PointStart>; 2])> {
     let load = |arrays: Arrays| {
         load(arrays, model).map(|(displacements, columns)| PointStart {
             displacements,
             columns,
         })
     };
-    let start = (!earlier.is_empty()).then(|| load(earlier)).transpose()?;
-    Ok((load(own)?, start))
+    let mut earlier = [None, None];
+    for (prefix, earlier) in EARLIER.into_iter().zip(&mut earlier) {
+        let (named, others): (Arrays, Arrays) =
+            own.into_iter().partition(|(name, _)| name.starts_with(prefix));
+        own = others;
+        if !named.is_empty() {
+            let bare = |(name, values): (String, _)| (name[prefix.len()..].to_string(), values);
+            *earlier = Some(load(named.into_iter().map(bare).collect())?);
+        }
+    }
+    Ok((load(own)?, earlier))
 }
 
 /// What was stored of an equilibrium of a model, bit for bit; fails where an array is missing, unknown or of another

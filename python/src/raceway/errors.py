@@ -37,4 +37,4 @@ class NoSolution(ProgramError):
 
 
 class StoppedEarly(ProgramError):
-    """A motion stopped before its end and has saved its step (exit code 75): `raceway.resume` goes on."""
+    """A run over time stopped before its end and has saved its step (exit code 75): `raceway.resume` goes on."""

@@ -101,7 +101,7 @@ def resume(
     progress: ProgressHandler = None,
     program: PathLike | None = None,
 ) -> Results:
-    """Goes on with a motion from its newest whole step, to the same bits as if it had not been interrupted."""
+    """Goes on with a run over time from its newest whole step, to the same bits as if it had not been interrupted."""
     command("resume", folder, *_threads(threads), progress=progress, program=program)
     return open_results(folder)
 

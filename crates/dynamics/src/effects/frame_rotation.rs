@@ -45,7 +45,7 @@ stress_stiffening = true        # optional: their stress of turning stiffens the
 pub struct FrameRotationTable {
     /// Whether the stress of turning rings stiffens them.
     #[serde(default)]
-    stress_stiffening: bool,
+    pub stress_stiffening: bool,
 }
 
 impl table::EffectTable for FrameRotationTable {

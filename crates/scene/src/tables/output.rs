@@ -148,7 +148,8 @@ impl RawOutput {
         }
         if self.restart_every.is_some() && !context.is_motion {
             problems.add(
-                "output.restart_every does nothing without a motion, [dynamic]: nothing else can be resumed; remove it",
+                "output.restart_every does nothing without a motion, [dynamic]: equilibria over time have a restart \
+                 state in every step file; remove it",
             );
         }
         if self.displacement == Some(FieldPrecision::F32) && !context.is_motion {

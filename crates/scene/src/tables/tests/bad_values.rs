@@ -330,7 +330,8 @@ const INVALID: [Case; 61] = [
         "compression",
         "restart_every = 2",
         &[
-            "output.restart_every does nothing without a motion, [dynamic]: nothing else can be resumed; remove it",
+            "output.restart_every does nothing without a motion, [dynamic]: equilibria over time have a restart state \
+             in every step file; remove it",
         ],
     ),
     (
