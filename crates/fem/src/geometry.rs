@@ -4,6 +4,7 @@ use mesh::Mesh;
 
 use crate::element::MAX_NODES;
 use crate::error::FemError;
+use crate::material::Material;
 use crate::quadrature;
 use crate::table::ShapeTable;
 
@@ -16,6 +17,21 @@ pub(crate) struct InverseMap {
     pub inverse: [[f64; 3]; 3],
     /// Determinant of the Jacobian, m^3.
     pub det: f64,
+}
+
+/// Refuses a mesh of [`check_connectivity`] and a material that are not sound, before displacements `u`, m,
+/// `[3 n_nodes]`, are taken of them.
+///
+/// # Panics
+/// If `u` has another length.
+pub(crate) fn check_displaced(mesh: &Mesh, material: &Material, u: &[f64]) -> Result<(), FemError> {
+    assert_eq!(
+        u.len(),
+        mesh.n_dofs(),
+        "a displacement of every degree of freedom"
+    );
+    check_connectivity(mesh)?;
+    material.validate()
 }
 
 /// Refuses a mesh without elements, with a broken connectivity, or with unknown nodes.

@@ -18,7 +18,7 @@ use sprs::CsMat;
 
 use crate::element::MAX_NODES;
 use crate::error::FemError;
-use crate::geometry::{check_connectivity, checked_map, coordinates, physical};
+use crate::geometry::{check_displaced, checked_map, coordinates, physical};
 use crate::mass::node_scalars;
 use crate::material::{Material, hooke};
 use crate::pattern::Pattern;
@@ -85,13 +85,7 @@ struct NodePrestress<'a> {
 
 impl<'a> NodePrestress<'a> {
     fn new(mesh: &'a Mesh, material: &Material, u: &'a [f64]) -> Result<NodePrestress<'a>, FemError> {
-        assert_eq!(
-            u.len(),
-            mesh.n_dofs(),
-            "a displacement of every degree of freedom"
-        );
-        check_connectivity(mesh)?;
-        material.validate()?;
+        check_displaced(mesh, material, u)?;
         Ok(NodePrestress {
             table: ShapeTable::new(mesh.kind, &quadrature::stiffness_rule(mesh.kind)),
             lame: [material.lame_lambda(), material.shear_modulus()],

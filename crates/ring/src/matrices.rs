@@ -126,36 +126,22 @@ pub struct Stencils {
 }
 
 impl SparseMatrices {
-    /// Assembles the ring.
+    /// Assembles the ring, stiffened by the stress of an `expansion`, see [`crate::expansion`].
     pub fn new(
         ring: &RingModel,
         side: &'static str,
         coordinates: &Coordinates,
+        expansion: Option<&[f64]>,
     ) -> Result<SparseMatrices, RingError> {
         let fem_error = |source| RingError::Fem { side, source };
         let mesh = &ring.mesh;
         let stiffness = fem::assemble_stiffness(mesh, &ring.material).map_err(fem_error)?;
         let pattern = fem::Pattern::new(mesh).map_err(fem_error)?;
+        let stress = |u: &[f64]| fem::assemble_node_prestress(&pattern, mesh, &ring.material, u);
         Ok(SparseMatrices {
             stiffness: coordinates.reduce_matrix(&stiffness),
             node_mass: fem::assemble_node_mass(&pattern, mesh, &ring.material).map_err(fem_error)?,
-            node_stress: None,
-        })
-    }
-
-    /// The same with the stiffness by the stress of `expansion`, see [`crate::expansion`].
-    pub fn stiffened(
-        self,
-        ring: &RingModel,
-        side: &'static str,
-        expansion: &[f64],
-    ) -> Result<SparseMatrices, RingError> {
-        let fem_error = |source| RingError::Fem { side, source };
-        let pattern = fem::Pattern::new(&ring.mesh).map_err(fem_error)?;
-        let stress = fem::assemble_node_prestress(&pattern, &ring.mesh, &ring.material, expansion);
-        Ok(SparseMatrices {
-            node_stress: Some(stress.map_err(fem_error)?),
-            ..self
+            node_stress: expansion.map(stress).transpose().map_err(fem_error)?,
         })
     }
 

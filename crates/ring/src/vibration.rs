@@ -87,7 +87,7 @@ impl VibratingRing {
                     (Box::new(stencils), Box::new(factor))
                 }
                 Err(_) => {
-                    let matrices = SparseMatrices::new(ring, name, &held.coordinates)?;
+                    let matrices = SparseMatrices::new(ring, name, &held.coordinates, None)?;
                     let symbolic = matrices.analyse(ring, &held.coordinates).map_err(error)?;
                     let factor = matrices.factor(&symbolic, &held.coordinates, coefficients);
                     (Box::new(matrices), Box::new(factor.map_err(error)?))

@@ -17,7 +17,7 @@ use sprs::CsMat;
 use crate::chunks::for_each_element;
 use crate::element::MAX_NODES;
 use crate::error::FemError;
-use crate::geometry::check_connectivity;
+use crate::geometry::check_displaced;
 use crate::material::Material;
 use crate::pattern::Pattern;
 use crate::quadrature;
@@ -68,13 +68,7 @@ pub fn assemble_stiffness_into(
 /// # Panics
 /// If `u` has another length.
 pub fn stiffness_product(mesh: &Mesh, material: &Material, u: &[f64]) -> Result<Vec<f64>, FemError> {
-    assert_eq!(
-        u.len(),
-        mesh.n_dofs(),
-        "a displacement of every degree of freedom"
-    );
-    check_connectivity(mesh)?;
-    material.validate()?;
+    check_displaced(mesh, material, u)?;
     let kernel = ElementStiffness::new(mesh.kind, material);
     let n = 3 * mesh.kind.n_nodes();
     let compute = |e: usize, forces: &mut [f64]| {

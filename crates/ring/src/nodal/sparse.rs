@@ -48,11 +48,7 @@ impl SparseBody {
         why: String,
         expansion: Option<&[f64]>,
     ) -> Result<SparseBody, RingError> {
-        let matrices = SparseMatrices::new(ring, held.name, &held.coordinates)?;
-        let matrices = match expansion {
-            Some(expansion) => matrices.stiffened(ring, held.name, expansion)?,
-            None => matrices,
-        };
+        let matrices = SparseMatrices::new(ring, held.name, &held.coordinates, expansion)?;
         let symbolic = matrices
             .analyse(ring, &held.coordinates)
             .map_err(|source| RingError::Solver {
