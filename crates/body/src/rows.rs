@@ -8,13 +8,13 @@
 const LANES: usize = 8;
 
 /// Functionals over x, y, z of some nodes.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct SeatRows {
     n_nodes: usize,
     kind: RowForm,
 }
 
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 enum RowForm {
     /// `[n][3 n_nodes]` flat.
     Whole(Vec<f64>),

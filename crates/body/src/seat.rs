@@ -178,7 +178,7 @@ fn legendre(degree: usize, x: f64) -> Vec<f64> {
 }
 
 /// One side of a joint: functionals of its nodal displacements.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct SeatFunctions {
     /// The functions.
     pub space: SeatSpace,

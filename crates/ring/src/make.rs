@@ -5,6 +5,7 @@ use std::sync::Arc;
 use crate::body::{ElasticBody, Frame, Held, HeldRing, Partner};
 use crate::error::RingError;
 use crate::expansion::centrifugal_expansion;
+use crate::factored::FactoredBody;
 use crate::harmonic::make::harmonic_body;
 use crate::harmonic::periodic::Periodic;
 use crate::model::{Backend, RingModel};
@@ -28,12 +29,39 @@ pub struct BodySettings {
     pub frame: Frame,
 }
 
+/// A ring whose body is made.
+#[derive(Clone, Copy)]
+pub struct MadeRing<'a> {
+    /// The ring.
+    pub ring: &'a RingModel,
+    /// What its body is made with.
+    pub settings: BodySettings,
+    /// Its body.
+    pub body: &'a Arc<FactoredBody>,
+}
+
 /// Assembles a ring and prepares its factorisation with the linear solver that fits it. Collective.
 pub fn elastic_body(
     name: &'static str,
     ring: &RingModel,
     settings: BodySettings,
 ) -> Result<Arc<dyn ElasticBody>, RingError> {
+    Ok(body_beside(name, ring, settings, &[])?.into_body())
+}
+
+/// The same of a ring beside others, whose body it shares with one that is alike. Rings alike that are tied to bodies
+/// of their own share what is behind their seats. Collective.
+pub fn body_beside(
+    name: &'static str,
+    ring: &RingModel,
+    settings: BodySettings,
+    made: &[MadeRing<'_>],
+) -> Result<Arc<FactoredBody>, RingError> {
+    let is_alike = |made: &&MadeRing<'_>| made.settings == settings && made.ring.is_like(ring);
+    let alike = made.iter().find(is_alike).map(|made| made.body);
+    if let (None, Some(body)) = (&ring.tie, alike) {
+        return Ok(body.clone());
+    }
     let how = Held {
         hold: ring.hold,
         partner: settings.partner,
@@ -57,10 +85,15 @@ pub fn elastic_body(
                 ..held
             };
             let body = Oscillators::new(tie, functions, settings.damping)?;
-            let ring = solved_body(ring, inside, settings)?;
-            Ok(Arc::new(TiedRing::new(ring, outside, body)))
+            let known = alike.and_then(|alike| alike.behind_seat(body.functions()).cloned());
+            let ring = match known {
+                Some(ring) => ring,
+                None => FactoredBody::new(solved_body(ring, inside, settings)?, None),
+            };
+            let tied = TiedRing::new(ring.clone(), outside, body);
+            Ok(FactoredBody::new(Arc::new(tied), Some(ring)))
         }
-        _ => solved_body(ring, held, settings),
+        _ => Ok(FactoredBody::new(solved_body(ring, held, settings)?, None)),
     }
 }
 

@@ -28,12 +28,13 @@
 //! step are counted as those of a periodic ring.
 //!
 //! **Motion** of a periodic ring of n nodes, N sectors and r section nodes in its raceway: factor, table of responses
-//! 72 N r^2, 900 per coupling of a sector, 24 n for each functional of the mount, 1340 n for mesh, sites, states and
-//! the vectors of a step, 390 n for each of two step files that wait to be written. The last three numbers are
-//! measured: see `tests/memory.rs`.
+//! 72 N r^2, 900 per coupling of a sector, 24 N r for each functional of the mount, 1340 n for mesh, sites, states and
+//! the vectors of a step, 390 n for each of two step files that wait to be written. The last two numbers are measured:
+//! see `tests/memory.rs`. Making takes 24 n for each functional whose column is solved at the same time.
 //!
 //! The threads need not be in step, and the measured peak is then lower, down to that of one thread.
 
+use crate::mount::COLUMNS_AT_ONCE;
 use mesh::Mesh;
 use solver::Symbolic;
 
@@ -170,9 +171,10 @@ impl MotionSizes {
         let kept = self.factor
             + 72 * self.n_sectors * self.n_responses.pow(2)
             + MOTION_COUPLING_BYTES * self.n_couplings
-            + (MOTION_BYTES + 24 * self.n_mount) * self.n_nodes;
+            + 24 * self.n_mount * self.n_sectors * self.n_responses
+            + MOTION_BYTES * self.n_nodes;
         MotionMemory {
-            making: kept,
+            making: kept + 24 * self.n_mount.min(COLUMNS_AT_ONCE) * self.n_nodes,
             kept,
             queued: QUEUED_BYTES * self.n_nodes,
         }

@@ -110,6 +110,18 @@ impl RingModel {
         }
     }
 
+    /// Whether the body of this ring is that of another as well, apart from what it is tied to. Rings whose meshes
+    /// ranks have divided among them are not compared.
+    pub fn is_like(&self, other: &RingModel) -> bool {
+        let is_undivided = |ring: &RingModel| ring.sectors.division.is_none();
+        is_undivided(self)
+            && is_undivided(other)
+            && self.tie.is_some() == other.tie.is_some()
+            && (self.hold, self.held_group) == (other.hold, other.held_group)
+            && (self.material, self.groove) == (other.material, other.groove)
+            && self.mesh == other.mesh
+    }
+
     /// The same if they were asked for before.
     pub(crate) fn known_node_masses(&self) -> Option<&Arc<NodeMasses>> {
         self.sectors.node_masses.get()

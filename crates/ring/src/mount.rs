@@ -110,30 +110,44 @@ impl DenseRows {
     }
 }
 
-/// S^-1 times the functionals of the mount.
+/// Functionals whose columns are solved together.
+pub(crate) const COLUMNS_AT_ONCE: usize = 32;
+
+/// S^-1 times the functionals of the mount, at the coordinates that contacts and defects meet.
 pub(crate) struct MountColumns {
-    /// Of each coordinate what the functionals move it, `[n][n_mount]` flat.
+    /// Of each coordinate that is kept what the functionals move it, `[n_kept][n_mount]` flat.
     moved: Vec<f64>,
+    /// Where a coordinate is kept.
+    places: Vec<Option<usize>>,
     /// Their values at the functionals, row-major.
     pub compliance: Vec<f64>,
     n_mount: usize,
 }
 
 impl MountColumns {
-    /// Those of a factor of n rows.
-    pub fn new(factor: &dyn LinearSolver, mount: &[SparseLoad], n: usize) -> MountColumns {
+    /// Those of a factor of n rows, at the coordinates `kept`.
+    pub fn new(factor: &dyn LinearSolver, mount: &[SparseLoad], n: usize, kept: &[usize]) -> MountColumns {
         let m = mount.len();
-        let mut columns = vec![0.0; n * m];
-        fill(&mut columns, mount, n);
-        factor.solve(&mut columns, m);
-        let entry = |k: usize| sparse_dot(&mount[k / m], &columns[n * (k % m)..n * (k % m + 1)]);
-        let compliance = (0..m * m).map(entry).collect();
-        let mut moved = Vec::with_capacity(n * m);
-        for i in 0..n {
-            moved.extend((0..m).map(|k| columns[n * k + i]));
+        let mut places = vec![None; n];
+        kept.iter()
+            .enumerate()
+            .for_each(|(place, &i)| places[i] = Some(place));
+        let (mut moved, mut compliance) = (vec![0.0; m * kept.len()], vec![0.0; m * m]);
+        for (block, functionals) in mount.chunks(COLUMNS_AT_ONCE).enumerate() {
+            let mut columns = vec![0.0; n * functionals.len()];
+            fill(&mut columns, functionals, n);
+            factor.solve(&mut columns, functionals.len());
+            for (c, column) in columns.chunks_exact(n).enumerate() {
+                let k = COLUMNS_AT_ONCE * block + c;
+                kept.iter()
+                    .zip(moved.chunks_exact_mut(m))
+                    .for_each(|(&i, at)| at[k] = column[i]);
+                (0..m).for_each(|row| compliance[m * row + k] = sparse_dot(&mount[row], column));
+            }
         }
         MountColumns {
             compliance,
+            places,
             moved,
             n_mount: m,
         }
@@ -144,9 +158,10 @@ impl MountColumns {
         self.n_mount
     }
 
-    /// What unit forces on the functionals move a coordinate.
+    /// What unit forces on the functionals move a coordinate that is kept.
     pub fn at(&self, coordinate: usize) -> &[f64] {
-        &self.moved[self.n_mount * coordinate..][..self.n_mount]
+        let place = self.places[coordinate].expect("contacts and defects meet what is kept");
+        &self.moved[self.n_mount * place..][..self.n_mount]
     }
 
     /// What they move a functional.

@@ -139,6 +139,11 @@ impl Oscillators {
         self
     }
 
+    /// Functions of the seat on the ring's side.
+    pub(crate) fn functions(&self) -> &SeatFunctions {
+        &self.functions
+    }
+
     /// Number of functions of the seat.
     pub(crate) fn n_functions(&self) -> usize {
         self.functions.n()

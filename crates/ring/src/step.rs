@@ -212,6 +212,10 @@ pub trait ElasticStep: Send {
     /// Puts a mean load over the step on these oscillators, in place of the one before: what other rings do to them.
     fn load_body(&mut self, _load: &[f64]) {}
 
+    /// Moves the seat of a body that stands by what other rings do to it over the step, m, in place of their load,
+    /// until [`ElasticStep::load_body`] puts this on the body.
+    fn move_seat(&mut self, _motion: &[f64]) {}
+
     /// The body to which the ring is tied, without it; None where no shaft carries one.
     fn body_alone(&self) -> Option<BodyAlone> {
         None

@@ -17,9 +17,10 @@
 //! ```
 //!
 //! So a round leaves only what the contacts answer to the corrections: over a step the inertia of rings holds most of
-//! that back. What the ledger of a bearing says of its body includes what the others do to it, as imposed work.
+//! that back. Contacts feel the others through the seat alone, which they move by -D_st lam_t. So rounds of a body that
+//! stands move seats, and when these rest the loads go on the oscillators. What the ledger of a bearing says of its
+//! body includes what the others do to it, as imposed work.
 
-use contact::Side;
 use dense::DenseCholesky;
 use dynamics::motion::held::{HeldPart, Holding};
 
@@ -41,6 +42,10 @@ pub struct BodyJoints {
     dt: f64,
     /// (A + D)^-1 times D between different seats, over the functions of all, column-major.
     answers: Vec<f64>,
+    /// D_st, `[n_s][n_t]` flat, by the bearings s and t.
+    softness: Vec<Vec<Vec<f64>>>,
+    /// Whether a shaft carries the body.
+    on_shaft: bool,
 }
 
 /// Loads on the oscillators of shared bodies.
@@ -56,6 +61,8 @@ struct SharedLoad<'a> {
     told: Vec<Vec<f64>>,
     /// Last change over the size.
     change: f64,
+    /// Whether seats have moved by forces that are not yet on the oscillators.
+    is_ahead: bool,
 }
 
 impl BodyJoints {
@@ -97,6 +104,10 @@ impl BodyJoints {
         Ok(BodyJoints {
             dt: parts[0].dt(),
             answers: between,
+            softness,
+            on_shaft: parts[bearings[0]]
+                .body(*side)
+                .is_some_and(|body| body.on_shaft().is_some()),
         })
     }
 
@@ -127,6 +138,7 @@ impl<'a> SharedLoads<'a> {
                 joints: joints.map_or_else(|| BodyJoints::new(housed, parts), Ok)?,
                 told: Vec::new(),
                 change: f64::INFINITY,
+                is_ahead: false,
             })
         };
         let bodies = housed.iter().map(body).collect::<Result<_, AssemblyError>>()?;
@@ -137,9 +149,7 @@ impl<'a> SharedLoads<'a> {
     /// to it is not known yet.
     pub fn expect(&mut self, parts: &mut [HeldPart<'_>]) {
         for body in &mut self.bodies {
-            let HousedTogether { side, bearings, .. } = body.housed;
-            let seen = parts[bearings[0]].body(*side);
-            if seen.is_some_and(|body| body.on_shaft().is_none()) {
+            if !body.joints.on_shaft {
                 body.exchange(parts);
                 body.change = f64::INFINITY;
             }
@@ -188,27 +198,52 @@ impl SharedLoad<'_> {
         if change <= LIMIT || stalls {
             // What changes after this is new, such as turning frames: earlier rounds say nothing of it.
             self.change = f64::INFINITY;
+            if std::mem::take(&mut self.is_ahead) {
+                self.load(parts);
+            }
             return Holding::Settled;
         }
         self.change = change;
         let corrections = self.joints.correction(&changes);
         let corrected = found.iter_mut().flatten().zip(corrections);
         corrected.for_each(|(lam, correction)| *lam += correction);
-        tell(*side, bearings, &found, parts);
         self.told = found;
+        match self.joints.on_shaft {
+            true => self.load(parts),
+            false => self.move_seats(parts),
+        }
         Holding::Again
     }
-}
 
-/// Puts the loads of the joints of the others on the body of each bearing.
-fn tell(side: Side, bearings: &[usize], joints: &[Vec<f64>], parts: &mut [HeldPart<'_>]) {
-    let pairs = bearings.iter().zip(joints);
-    let loads: Vec<Vec<f64>> = pairs.map(|(&i, lam)| parts[i].load_on_body(side, lam)).collect();
-    for (number, &i) in bearings.iter().enumerate() {
-        let of_others = |k: usize| -> f64 {
-            let others = (0..bearings.len()).filter(|other| *other != number);
-            others.map(|other| loads[other][k]).sum()
-        };
-        parts[i].load_body(side, (0..loads[number].len()).map(of_others).collect());
+    /// Moves the seat of each bearing by what the joints of the others do to it.
+    fn move_seats(&mut self, parts: &mut [HeldPart<'_>]) {
+        let HousedTogether { side, bearings, .. } = self.housed;
+        for (s, &i) in bearings.iter().enumerate() {
+            let mut motion = vec![0.0; self.told[s].len()];
+            let others = self.joints.softness.iter().zip(&self.told).enumerate();
+            for (_, (softness, lam)) in others.filter(|(t, _)| *t != s) {
+                // D_st is D_ts transposed.
+                let columns = softness[s].chunks_exact(motion.len().max(1)).zip(lam);
+                columns.for_each(|(column, force)| {
+                    motion.iter_mut().zip(column).for_each(|(y, d)| *y -= force * d)
+                });
+            }
+            parts[i].move_seat(*side, &motion);
+        }
+        self.is_ahead = true;
+    }
+
+    /// Puts the loads of the joints of the others on the body of each bearing.
+    fn load(&self, parts: &mut [HeldPart<'_>]) {
+        let HousedTogether { side, bearings, .. } = self.housed;
+        let pairs = bearings.iter().zip(&self.told);
+        let loads: Vec<Vec<f64>> = pairs.map(|(&i, lam)| parts[i].load_on_body(*side, lam)).collect();
+        for (number, &i) in bearings.iter().enumerate() {
+            let of_others = |k: usize| -> f64 {
+                let others = (0..bearings.len()).filter(|other| *other != number);
+                others.map(|other| loads[other][k]).sum()
+            };
+            parts[i].load_body(*side, (0..loads[number].len()).map(of_others).collect());
+        }
     }
 }

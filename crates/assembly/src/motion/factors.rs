@@ -18,6 +18,7 @@ use dynamics::stiffness::{N_SHAFT, ShaftMatrix};
 use super::side_by_side::of_each;
 use super::step::ShaftStep;
 use crate::error::AssemblyError;
+use crate::mixing::dot;
 use crate::newton::Mount;
 use crate::shaft::applied;
 
@@ -25,7 +26,8 @@ use crate::shaft::applied;
 pub struct ShaftAlone {
     dt: f64,
     speed: f64,
-    factors: DenseLu,
+    /// A^-1 over the free dofs, row-major.
+    inverse: Vec<f64>,
     /// What a unit load on a place moves, a column of all dofs for each of the five of every place.
     columns: Vec<Vec<f64>>,
     /// Motion of the places for these loads, row-major.
@@ -77,7 +79,7 @@ impl KeptFactors {
         }
         match (&self.tangent, &self.alone) {
             (Some(Tangent::Borne { tangents, loads }), Some(alone)) => {
-                let mut moved = solve(&alone.factors, residual, &self.free);
+                let mut moved = alone.moved(residual, &self.free);
                 let mut force = Vec::with_capacity(N_SHAFT * tangents.len());
                 for (mount, tangent) in step.mounts.iter().zip(tangents) {
                     force.extend(applied(tangent, &mount.station.displacement(&moved)));
@@ -136,7 +138,7 @@ impl ShaftAlone {
         let mut alone = ShaftAlone {
             dt: step.dt,
             speed: step.speeds[1],
-            factors: factored(n, &step.own_tangent(), free)?,
+            inverse: factored(n, &step.own_tangent(), free)?.inverse(),
             columns: Vec::new(),
             compliance: Vec::new(),
         };
@@ -145,7 +147,8 @@ impl ShaftAlone {
                 let (mut unit, mut load) = ([0.0; N_SHAFT], vec![0.0; n]);
                 unit[i] = 1.0;
                 mount.station.add_load(unit, &mut load);
-                alone.columns.push(solve(&alone.factors, &load, free));
+                let column = alone.moved(&load, free);
+                alone.columns.push(column);
             }
         }
         for mount in step.mounts {
@@ -156,6 +159,16 @@ impl ShaftAlone {
             }
         }
         Ok(alone)
+    }
+
+    /// Motion of all dofs for a load on them; held ones stay.
+    fn moved(&self, load: &[f64], free: &[usize]) -> Vec<f64> {
+        let on_free: Vec<f64> = free.iter().map(|&i| load[i]).collect();
+        let mut motion = vec![0.0; load.len()];
+        for (&i, row) in free.iter().zip(self.inverse.chunks_exact(free.len().max(1))) {
+            motion[i] = dot(row, &on_free);
+        }
+        motion
     }
 }
 

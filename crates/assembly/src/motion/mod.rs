@@ -115,7 +115,7 @@ impl<'a> AssemblyMotion<'a> {
         let mut bearings = Vec::new();
         for (bearing, settings) in assembly.bearings.iter().zip(settings) {
             require_conserving(&settings)?;
-            let motion = Motion::new(&bearing.model, settings);
+            let motion = Motion::beside(&bearings, &bearing.model, settings);
             bearings.push(motion.map_err(AssemblyError::of_bearing(&bearing.name))?);
         }
         Ok(AssemblyMotion {

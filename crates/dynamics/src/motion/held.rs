@@ -227,6 +227,15 @@ impl<'m> HeldPart<'m> {
         }
     }
 
+    /// Moves the seat of the body of a ring by what others do to it at the end, m, in place of their load.
+    pub fn move_seat(&mut self, side: Side, motion: &[f64]) {
+        let i = side.index();
+        if let (Some(step), Some(ports)) = (&mut self.part.rings[i], &mut self.part.parts.rings[i]) {
+            step.move_seat(motion);
+            ports.offset.clone_from(&step.answer().predicted);
+        }
+    }
+
     /// Brings patches in line with the last answer.
     pub fn place(&mut self) -> Result<Holding, DynamicsError> {
         self.part.clock.lap();

@@ -14,8 +14,8 @@ use ring::memory::forecast_motion_peak;
 use ring::rigid::RigidInertia;
 use ring::statics::iterations_note;
 use ring::{
-    BodySettings, ElasticBody, Frame, FrameTurn, Hold, Inventory, Oscillators, StepFactor, StepScheme,
-    elastic_body,
+    BodySettings, FactoredBody, Frame, FrameTurn, Hold, Inventory, MadeRing, Oscillators, RingModel,
+    StepFactor, StepScheme, body_beside,
 };
 
 use super::state::MotionSettings;
@@ -26,14 +26,14 @@ use crate::model::{ContactMode, Model, ShaftDof};
 use crate::raceway::Raceway;
 
 /// Factors of both rings at one step size.
-pub(super) type Rung = [Option<Box<dyn StepFactor>>; 2];
+pub(super) type Rung = [Option<Arc<dyn StepFactor>>; 2];
 
 /// A flexible ring and its raceway.
 pub struct MovingRing {
     /// The elastic body.
-    pub body: Arc<dyn ElasticBody>,
+    pub body: Arc<FactoredBody>,
     /// Where contacts find it.
-    pub raceway: Raceway,
+    pub raceway: Arc<Raceway>,
 }
 
 /// A model ready to move.
@@ -57,21 +57,19 @@ pub struct Motion<'a> {
 impl<'a> Motion<'a> {
     /// Assembles both rings and factors them for the full step.
     pub fn new(model: &'a Model, settings: MotionSettings) -> Result<Motion<'a>, DynamicsError> {
+        Motion::beside(&[], model, settings)
+    }
+
+    /// The same beside other bearings, with whose rings it shares what is alike.
+    pub fn beside(
+        others: &[Motion<'_>],
+        model: &'a Model,
+        settings: MotionSettings,
+    ) -> Result<Motion<'a>, DynamicsError> {
         check_supported(model)?;
         check_free(model, &settings)?;
         let build = |side: Side| {
-            let moving = |ring| -> Result<MovingRing, DynamicsError> {
-                let settings = BodySettings {
-                    partner: partner(model, side),
-                    damping: settings.rayleigh,
-                    backend: model.backend,
-                    frame: model.frame(side),
-                };
-                Ok(MovingRing {
-                    body: elastic_body(side.name(), ring, settings)?,
-                    raceway: Raceway::new(ring, model.contact.mode),
-                })
-            };
+            let moving = |ring| moving_ring((ring, side), model, &settings, others);
             model.ring(side).map(moving).transpose()
         };
         let [inner, outer] = model.backend.try_on_sides(build)?;
@@ -115,7 +113,7 @@ impl<'a> Motion<'a> {
             dt,
         };
         let build = |side: Side| {
-            let factor = |ring: &MovingRing| ring.body.clone().step_factor(scheme);
+            let factor = |ring: &MovingRing| ring.body.factor(scheme);
             self.rings[side.index()].as_ref().map(factor).transpose()
         };
         let rung = self.model.backend.try_on_sides(build)?;
@@ -229,6 +227,39 @@ impl<'a> Motion<'a> {
     pub(super) fn cage_angle(&self, time: f64) -> f64 {
         self.kinematics.cage_angle(&self.settings.speeds, time)
     }
+}
+
+/// A ring that moves, with what it shares with those of other bearings.
+fn moving_ring(
+    (ring, side): (&RingModel, Side),
+    model: &Model,
+    settings: &MotionSettings,
+    others: &[Motion<'_>],
+) -> Result<MovingRing, DynamicsError> {
+    let of = |model: &Model, settings: &MotionSettings| BodySettings {
+        partner: partner(model, side),
+        damping: settings.rayleigh,
+        backend: model.backend,
+        frame: model.frame(side),
+    };
+    let rings = others.iter().filter_map(|other| {
+        let (moving, ring) = (other.rings[side.index()].as_ref()?, other.model.ring(side)?);
+        Some((other, moving, ring))
+    });
+    let made = rings.clone().map(|(other, moving, ring)| MadeRing {
+        ring,
+        settings: of(other.model, &other.settings),
+        body: &moving.body,
+    });
+    let body = body_beside(side.name(), ring, of(model, settings), &made.collect::<Vec<_>>())?;
+    let raceway = rings
+        .clone()
+        .find(|(other, _, like)| other.model.contact.mode == model.contact.mode && like.is_like(ring))
+        .map(|(_, moving, _)| moving.raceway.clone());
+    Ok(MovingRing {
+        body,
+        raceway: raceway.unwrap_or_else(|| Arc::new(Raceway::new(ring, model.contact.mode))),
+    })
 }
 
 /// Whether inertia turns with a shaft that may move across its axis or tilt.

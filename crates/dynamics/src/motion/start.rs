@@ -30,7 +30,7 @@ impl Motion<'_> {
             let omega = self.settings.speeds.of(side).at(0.0);
             let others = model.other_seats[side.index()].as_ref().map(|o| o.as_slice());
             Some(ring_at_start(
-                &*moving.body,
+                &**moving.body,
                 (elastic, others),
                 q,
                 velocity,
@@ -79,7 +79,7 @@ impl Motion<'_> {
             let body = &*self.rings[side.index()].as_ref()?.body;
             let none = vec![0.0; body.held().coordinates.expanded()];
             let (q, v) = side.choose((q, velocity), ([0.0; 5], [0.0; 5]));
-            Some(ring_at_start(body, (&none, None), q, v, omega))
+            Some(ring_at_start(&**body, (&none, None), q, v, omega))
         };
         let unloaded = PatchPlace {
             angle: self.model.geometry.free_contact_angle(),

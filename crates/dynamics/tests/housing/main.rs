@@ -3,6 +3,8 @@
 mod modes;
 mod motion;
 mod shaft;
+mod shared;
+mod smooth;
 #[path = "../support/mod.rs"]
 mod support;
 

@@ -16,7 +16,7 @@ use super::{
 const STEP: f64 = 1e-5;
 
 /// The outer ring on a body that moves, with its modes below a frequency, Hz.
-fn on_moving_body(mesh: mesh::Mesh, n: usize, below: f64) -> RingModel {
+pub fn on_moving_body(mesh: mesh::Mesh, n: usize, below: f64) -> RingModel {
     let space = space(&outer(Hold::MeanMotion), harmonics(n, 2));
     let body = surrounding(mesh, space, steel());
     let modes = Arc::new(body.modes(below).unwrap());

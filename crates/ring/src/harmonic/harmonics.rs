@@ -137,16 +137,20 @@ impl Harmonics {
         matrices: &dyn NodalMatrices,
         coefficients: [f64; 2],
     ) -> Result<CyclicFactor, RingError> {
-        let factored = || -> Result<(CyclicBordered, Responses), SolverError> {
+        let factored = || -> Result<(CyclicBordered, Responses, Vec<usize>), SolverError> {
             let solver = self.bordered(held, matrices, coefficients)?;
-            let responses = self.responses(held, &solver, coefficients)?;
-            Ok((solver, responses))
+            let (responses, chosen) = self.responses(held, &solver, coefficients)?;
+            Ok((solver, responses, chosen))
         };
-        let (solver, responses) = factored().map_err(|source| RingError::Solver {
+        let (solver, responses, chosen) = factored().map_err(|source| RingError::Solver {
             side: held.name,
             source,
         })?;
-        let mount = MountColumns::new(&solver, &held.mount.rows, held.coordinates.n());
+        let (ring, n) = (solver.inner().ring(), held.coordinates.n());
+        let met = ring.nodes_of(&chosen).into_iter();
+        let met = met.flat_map(|node| [3 * node, 3 * node + 1, 3 * node + 2]);
+        let kept: Vec<usize> = met.chain(ring.n()..n).collect();
+        let mount = MountColumns::new(&solver, &held.mount.rows, n, &kept);
         // The border of S is the mount of a clamped bore.
         let border_inverse = held.is_bordered().then(|| {
             DenseCholesky::factor(held.mount.len(), &mount.compliance)
@@ -180,13 +184,13 @@ impl Harmonics {
         })
     }
 
-    /// What contacts, partner and defect need of a factor.
+    /// What contacts, partner and defect need of a factor, and the section nodes of raceway and defect.
     fn responses(
         &self,
         held: &HeldRing,
         solver: &CyclicBordered,
         coefficients: [f64; 2],
-    ) -> Result<Responses, SolverError> {
+    ) -> Result<(Responses, Vec<usize>), SolverError> {
         let (n, ring) = (solver.inner().n(), solver.inner().ring());
         let change = self.defect.as_ref().map(|d| d.changes.of(coefficients));
         let change = change.transpose()?;
@@ -216,11 +220,12 @@ impl Harmonics {
             Some(_) => all.first(raceway.len()),
             None => all,
         };
-        Ok(Responses {
+        let responses = Responses {
             met,
             touched,
             table,
             defect,
-        })
+        };
+        Ok((responses, chosen))
     }
 }

@@ -27,6 +27,7 @@ use dense::DenseCholesky;
 
 use crate::body::{ElasticBody, HeldRing, RingShape};
 use crate::error::RingError;
+use crate::factored::FactoredBody;
 use crate::integrator::StepScheme;
 use crate::matrices::{Matrix, NodalMatrices};
 use crate::memory::MotionMemory;
@@ -39,7 +40,7 @@ use step::{TiedFactor, TiedShaft};
 /// A ring and the body to which it is tied.
 pub(crate) struct TiedRing {
     /// The ring, free, with the functionals of the seat as its mount.
-    ring: Arc<dyn ElasticBody>,
+    ring: Arc<FactoredBody>,
     /// The same as it looks from outside: without a mount.
     held: HeldRing,
     body: Arc<Oscillators>,
@@ -47,7 +48,7 @@ pub(crate) struct TiedRing {
 
 impl TiedRing {
     /// Ties a ring, free with the functionals of the seat as its mount, to a body; `outside` is the ring without it.
-    pub fn new(ring: Arc<dyn ElasticBody>, outside: HeldRing, body: Oscillators) -> TiedRing {
+    pub fn new(ring: Arc<FactoredBody>, outside: HeldRing, body: Oscillators) -> TiedRing {
         let body = body.with_ring(|| ring.rigid_inertia());
         TiedRing {
             ring,
@@ -125,8 +126,8 @@ impl ElasticBody for TiedRing {
     }
 
     fn step_factor(self: Arc<Self>, scheme: StepScheme) -> Result<Box<dyn StepFactor>, RingError> {
-        let ring = self.ring.clone().step_factor(scheme)?;
-        let mut joint = seat_compliance(&*self.ring, &*ring);
+        let ring = self.ring.factor(scheme)?;
+        let mut joint = seat_compliance(&**self.ring, &*ring);
         let seat = self.body.has_others().then(|| joint.clone());
         let body = BodyFactor::new(self.body.clone(), scheme);
         joint.iter_mut().zip(body.softness()).for_each(|(a, d)| *a += d);

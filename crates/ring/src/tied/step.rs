@@ -16,7 +16,7 @@ use crate::vectors::dot;
 /// Factors of ring and joint at one step size.
 pub(super) struct TiedFactor {
     pub body: BodyFactor,
-    pub ring: Box<dyn StepFactor>,
+    pub ring: Arc<dyn StepFactor>,
     /// A, where the body carries other rings.
     pub seat: Option<Vec<f64>>,
     /// A + D.
@@ -80,6 +80,8 @@ struct TiedStep<'a> {
     ring: Box<dyn ElasticStep + 'a>,
     old: &'a BodyState,
     body: BodyStep,
+    /// Motion of the seat at the end without loads of others on the body, m.
+    own_seat: Vec<f64>,
     /// Motion of the shaft at the end without loads of others on the body or forces of the shaft.
     unloaded: Vec<f64>,
     /// The same with the loads of others, but without what turns the ring.
@@ -138,6 +140,7 @@ impl StepFactor for TiedFactor {
             others: Vec::new(),
             frame,
             body: self.body.step(old, &[]),
+            own_seat: Vec::new(),
             old,
             answer: PortAnswer::default(),
             coupling: Vec::new(),
@@ -146,6 +149,7 @@ impl StepFactor for TiedFactor {
         };
         step.unloaded.clone_from(&step.body.shaft[1]);
         step.alone.clone_from(&step.body.shaft[1]);
+        step.own_seat.clone_from(&step.body.seat);
         if step.frame.is_some() {
             step.step_body();
         }
@@ -296,6 +300,12 @@ impl ElasticStep for TiedStep<'_> {
     fn load_body(&mut self, load: &[f64]) {
         self.others = load.to_vec();
         self.step_body();
+        self.predict();
+    }
+
+    fn move_seat(&mut self, motion: &[f64]) {
+        let seat = self.own_seat.iter().zip(motion);
+        self.body.seat = seat.map(|(own, by_others)| own + by_others).collect();
         self.predict();
     }
 

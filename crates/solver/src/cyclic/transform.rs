@@ -147,6 +147,20 @@ impl CyclicRing {
         section
     }
 
+    /// The caller's nodes that belong to the section nodes `section`, ascending.
+    pub fn nodes_of(&self, section: &[usize]) -> Vec<usize> {
+        let shared = &self.shared;
+        let places = invert(&shared.place, shared.place.len()).expect("every section node has a place");
+        let mut is_chosen = vec![false; self.n_section_nodes()];
+        section.iter().for_each(|&node| is_chosen[node] = true);
+        let node_of = |site: &usize| places[site % self.n_section_nodes()];
+        let nodes = shared.sites.iter().map(node_of).enumerate();
+        nodes
+            .filter(|(_, of)| is_chosen[*of])
+            .map(|(node, _)| node)
+            .collect()
+    }
+
     /// The section nodes to which the caller's nodes `nodes` belong, and the section nodes `section_nodes`.
     ///
     /// # Panics
