@@ -52,6 +52,17 @@ pub enum RingError {
         /// Why not.
         reason: String,
     },
+    /// The first natural frequency of a ring is not found.
+    #[error(
+        "the first natural frequency of the {side} ring is not found: {source}; \
+         with effects.frame_rotation.negligible = 0 it is not asked for"
+    )]
+    FirstFrequency {
+        /// `inner` or `outer`.
+        side: &'static str,
+        /// Cause.
+        source: DenseError,
+    },
     /// Another rank has failed.
     #[error("on rank {rank}: {message}")]
     OnRank {

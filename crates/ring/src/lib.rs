@@ -9,6 +9,7 @@ pub mod coordinates;
 pub mod division;
 pub mod error;
 pub mod expansion;
+pub mod first_frequency;
 mod harmonic;
 mod inertia;
 pub mod integrator;
