@@ -322,6 +322,11 @@ impl Model {
         }
     }
 
+    /// Whether the stress of its turning stiffens a ring.
+    pub fn is_stiffened(&self, side: Side) -> bool {
+        self.frame(side) == Frame::Stiffened
+    }
+
     /// The seat of the outer ring, if it slides along the axis.
     pub fn seat(&self) -> Option<Seat> {
         self.effects.iter().find_map(|effect| effect.seat())

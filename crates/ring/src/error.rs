@@ -102,6 +102,14 @@ pub enum RingError {
 }
 
 impl RingError {
+    /// A ring whose stress does not stiffen it, and why.
+    pub(crate) fn no_stress_stiffening(side: &'static str, reason: &str) -> RingError {
+        RingError::NoStressStiffening {
+            side,
+            reason: reason.to_string(),
+        }
+    }
+
     /// Whether the cause is in what a user gave, not in its solution: a surface that holds nothing, an element, too
     /// many sectors.
     pub fn is_of_input(&self) -> bool {

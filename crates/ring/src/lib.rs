@@ -41,7 +41,7 @@ pub use body::{ElasticBody, Frame, Held, HeldRing, Partner, RingShape};
 pub use error::RingError;
 pub use integrator::{Integrator, StepScheme};
 pub use inventory::Inventory;
-pub use make::{BodySettings, elastic_body};
+pub use make::{BodySettings, elastic_body, require_stiffening};
 pub use model::{Backend, Hold, NodeMasses, RACEWAY_GROUP, RingModel, Sectors};
 pub use oscillators::Oscillators;
 pub use seat::{OwnStress, RadialProfile, SeatAction, SeatField};

@@ -15,7 +15,7 @@ use ring::rigid::RigidInertia;
 use ring::statics::iterations_note;
 use ring::{
     BodySettings, ElasticBody, Frame, FrameTurn, Hold, Inventory, Oscillators, RingModel, StepFactor,
-    StepScheme, elastic_body,
+    StepScheme, elastic_body, require_stiffening,
 };
 
 use super::elastic_inertia::{LeftOut, left_out};
@@ -314,6 +314,11 @@ pub fn check_supported(model: &Model) -> Result<(), DynamicsError> {
             "real surfaces ([[profiles.*]], contact.edges) beside temperatures that change; keep [effects.temperature] \
              constant",
         );
+    }
+    for side in Side::BOTH {
+        if let (true, Some(ring)) = (model.is_stiffened(side), model.ring(side)) {
+            require_stiffening(side.name(), ring, model.backend)?;
+        }
     }
     Ok(())
 }
