@@ -2,6 +2,7 @@
 
 use std::sync::OnceLock;
 
+use crate::util::lockstep::{assert_same_run, small_motion};
 use crate::util::tables::{Table, summary};
 use crate::util::{Dir, Files, with_line};
 
@@ -18,6 +19,56 @@ fn moved() -> Dir {
         dir.run("out", &[]);
         dir.snapshot()
     }))
+}
+
+/// If this failed, the inertia of an elastic part would be left out without a word, by the end of a run instead of its
+/// speeds, or otherwise on another number of threads and after a resume.
+#[test]
+fn a_log_says_what_is_left_out_of_a_turning_ring() {
+    let dir = small_motion();
+    let run = |out: &str, sets: &[&str]| {
+        let sets = sets.iter().flat_map(|set| ["--set", set]).collect::<Vec<&str>>();
+        dir.run(
+            out,
+            &[&sets[..], &["--set", "effects.frame_rotation={}"]].concat(),
+        )
+        .stderr
+    };
+    let slow = "speed.inner=1800 rpm";
+    let left_out = "inner ring: the inertia of its elastic part is left out in its turning frame: about ";
+    let said = run("whole", &[slow]);
+    assert!(
+        said.contains(left_out) && said.contains("negligible = 1e-6"),
+        "{said}"
+    );
+    let to_come = "speed.inner={ times = [\"0 s\", \"1 s\"], values = [\"1800 rpm\", \"12000 rpm\"] }";
+    for (out, speed) in [("fast", "speed.inner=12000 rpm"), ("to_come", to_come)] {
+        assert!(!run(out, &[speed]).contains(left_out), "{out}");
+    }
+    let cut = dir.run(
+        "cut",
+        &[
+            "--threads",
+            "2",
+            "--set",
+            slow,
+            "--set",
+            "effects.frame_rotation={}",
+            "--set",
+            "dynamic.duration=0.2 ms",
+        ],
+    );
+    assert!(cut.stderr.contains(left_out));
+    let outcome = dir.raceway(&[
+        "resume",
+        "cut",
+        "--stored-scene",
+        "--set",
+        "dynamic.duration=0.4 ms",
+    ]);
+    assert_eq!(outcome.code, Some(0), "{}", outcome.stderr);
+    assert!(outcome.stderr.contains(left_out), "{}", outcome.stderr);
+    assert_same_run(&dir, "whole", "cut");
 }
 
 /// If this failed, a history would miss steps, or step files would not be those asked for.

@@ -48,6 +48,24 @@ fn check_shows_the_balance_of_the_sectors() {
     assert!(outcome.stdout.contains("peak of rank 0"), "{}", outcome.stdout);
 }
 
+/// Wrong: a user would learn on the cluster, after the start, that rings in sectors are not stiffened by their stress.
+#[test]
+fn check_refuses_stiffened_rings_in_sectors_as_a_run_does() {
+    let dir = small_motion();
+    let stiffened = ["--set", "effects.frame_rotation={ stress_stiffening = true }"];
+    let say = |command: &str, more: &[&str]| {
+        let outcome = dir.raceway(&[&[command, "scene.toml"], &stiffened[..], more].concat());
+        let error = outcome.stderr.lines().find(|line| line.starts_with("error: "));
+        (outcome.code, error.map(str::to_string))
+    };
+    let refusal = "error: effects.frame_rotation.stress_stiffening is not there for the inner ring: solver.backend = \
+                   \"sector\" cuts it into sectors; remove it, or set it to false";
+    let expected = (Some(2), Some(refusal.to_string()));
+    assert_eq!(say("check", &SECTOR), expected);
+    assert_eq!(say("run", &SECTOR), expected);
+    assert_eq!(say("check", &[]), (Some(0), None));
+}
+
 /// Wrong: more sectors than elements, or sectors for another solver, would be taken without a word.
 #[test]
 fn sectors_that_cannot_be_are_refused() {

@@ -2,6 +2,7 @@
 
 use serde_json::Value;
 
+use crate::util::lockstep::small_motion;
 use crate::util::tables::{Table, keys, number, summary};
 use crate::util::{Dir, Outcome, RIGID, SCENE, assert_close, with_line};
 
@@ -403,6 +404,31 @@ fn a_campbell_diagram_has_modes_and_lines_over_the_speed() {
         plotted.stdout,
         plotted.stderr
     );
+}
+
+/// If this failed, a user would take the modes for those of rings that the stress of their turning stiffens.
+#[test]
+fn a_campbell_diagram_says_that_it_is_without_the_stress_of_turning_rings() {
+    let dir = small_motion();
+    let say = |out: &str, stiffening: &str| {
+        let table = format!("effects.frame_rotation={{ stress_stiffening = {stiffening} }}");
+        let arguments = ["campbell", "scene.toml", "--speeds", "1000..1000:1", "--out", out];
+        let sets = [
+            "--set",
+            "shaft.mass=2 kg",
+            "--set",
+            "speed.inner=1000 rpm",
+            "--set",
+            &table,
+        ];
+        let outcome = dir.raceway(&[&arguments[..], &sets].concat());
+        assert_eq!(outcome.code, Some(0), "{}", outcome.stderr);
+        outcome.stderr + &outcome.stdout
+    };
+    let warning = "modes over the speed are without effects.frame_rotation.stress_stiffening: their rings yield \
+                   without inertia of their own, which would take back most of what the stress of turning holds";
+    assert!(say("with", "true").contains(warning));
+    assert!(!say("without", "false").contains(warning));
 }
 
 /// If this failed, a diagram that cannot be had would end in numbers or in a message that helps nobody.

@@ -20,7 +20,9 @@ use results::stiffness::require_free;
 use results::survey::say_doubts;
 use scene::{AnyScene, Scene, build_model, doubts, model_with_rings};
 
-use crate::campbell_files::{self, Diagram, GROWS, MODES_OF_BEAM, growing, require_one_point};
+use crate::campbell_files::{
+    self, Diagram, GROWS, MODES_OF_BEAM, growing, require_one_point, without_stress,
+};
 use crate::progress::Progress;
 use crate::several::solving;
 use crate::several_campbell;
@@ -158,6 +160,7 @@ fn diagram(
     let (mut model, _) = build_model(&scene)?;
     let mut warnings = doubts(&scene, &model);
     say_doubts(&warnings);
+    warnings.extend(without_stress([&model]));
     let bodies = TurningAssembly::of_one("bearing", &model).map_err(solving)?;
     let number = number_of_modes(command, &model, bodies.is_some())?;
     let inertia = turning_inertia(&model).map_err(Failure::solving)?;

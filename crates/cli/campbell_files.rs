@@ -4,7 +4,8 @@ use std::path::Path;
 
 use anyhow::anyhow;
 use comm::print;
-use contact::BearingGeometry;
+use contact::{BearingGeometry, Side};
+use dynamics::Model;
 use dynamics::kinematics::SlipRatios;
 use dynamics::whirl::WhirlMode;
 use results::campbell::{CAMPBELL_LINES, CAMPBELL_TABLE, ModesAtSpeed, print_campbell, write_campbell};
@@ -31,6 +32,14 @@ pub fn growing(rpm: f64, modes: &[WhirlMode]) -> Option<String> {
         number + 1,
         modes[number].damping_ratio
     ))
+}
+
+/// What a user should know where a scene asks for the stiffness by the stress of turning rings.
+pub fn without_stress<'m>(models: impl IntoIterator<Item = &'m Model>) -> Option<String> {
+    let stiffens = |model: &Model| Side::BOTH.into_iter().any(|side| model.is_stiffened(side));
+    let text = "modes over the speed are without effects.frame_rotation.stress_stiffening: their rings yield without \
+                inertia of their own, which would take back most of what the stress of turning holds";
+    models.into_iter().any(stiffens).then(|| text.to_string())
 }
 
 /// Modes of a beam or of elastic bodies that are shown where nobody says how many.

@@ -6,6 +6,7 @@ use std::path::Path;
 use comm::print;
 use contact::BearingGeometry;
 use dynamics::kinematics::Kinematics;
+use dynamics::motion::check_supported;
 use dynamics::{Model, MotionMemory, RingMemory};
 use results::answer;
 use results::disk::{self, Forecast};
@@ -29,6 +30,9 @@ pub fn check(path: &Path, overrides: &[String]) -> Result<(), Failure> {
         AnyScene::Several(list) => return several_check::check(&list),
     };
     let (model, tags) = build_model(&scene)?;
+    if matches!(scene.analysis, Analysis::Dynamic(_)) {
+        check_supported(&model).map_err(Failure::solving)?;
+    }
     let probes = PlacedProbes::new(&scene, &model, &tags)?;
     let region = Survey::of_part(&scene, &model)?.region;
     print::line(format_args!(

@@ -164,7 +164,11 @@ fn factored<'a>(
 /// Says how each ring is solved.
 fn say_solvers(motion: &Motion<'_>, progress: &Progress) {
     for side in Side::BOTH {
-        if let Some(note) = motion.solver_note(side) {
+        let notes = [
+            motion.solver_note(side),
+            motion.left_out(side).map(|of| of.note()),
+        ];
+        for note in notes.into_iter().flatten() {
             progress.stage(&format!("{} ring: {note}", side.name()));
         }
     }

@@ -82,7 +82,11 @@ fn print_ring(model: &Model, side: Side) -> Result<Option<RingForecast>, Failure
         print_sectors(parts);
     }
     let on_ranks = prepared.parts().map(|parts| RingOnRanks::new(model, ring, parts));
-    Ok(Some((memory, prepared.motion(), on_ranks)))
+    let motion = prepared.motion().map(|motion| match model.is_stiffened(side) {
+        true => motion.stiffened(),
+        false => motion,
+    });
+    Ok(Some((memory, motion, on_ranks)))
 }
 
 /// Prints the balance of the sectors.

@@ -16,7 +16,9 @@ use results::stiffness::require_free;
 use results::survey::say_doubts;
 use scene::{SeveralScene, assembly_with_rings, build_assembly};
 
-use crate::campbell_files::{self, Diagram, GROWS, MODES_OF_BEAM, growing, require_one_point};
+use crate::campbell_files::{
+    self, Diagram, GROWS, MODES_OF_BEAM, growing, require_one_point, without_stress,
+};
 use crate::progress::Progress;
 use crate::several::{rings, solving, warnings_at};
 use crate::several_read::all_doubts;
@@ -59,6 +61,8 @@ fn diagram(
     let (mut assembly, _) = build_assembly(&scene)?;
     let mut warnings = all_doubts(&scene, &assembly);
     say_doubts(&warnings);
+    let models = assembly.bearings.iter().map(|bearing| &bearing.model);
+    warnings.extend(without_stress(models));
     let n_free = assembly.shaft.held.iter().filter(|held| held.is_none()).count();
     let turning = TurningAssembly::new(&assembly).map_err(solving)?;
     let default = if turning.has_bodies() {
@@ -81,10 +85,8 @@ fn diagram(
         let speed = rpm * PI / 30.0;
         turn_shaft(&mut scene, speed);
         assembly = assembly_with_rings(&scene, rings(assembly))?;
-        let solution = solver
-            .solve(&mut assembly, before.as_ref())
-            .map_err(solving)
-            .map_err(at)?;
+        let solution = solver.solve(&mut assembly, before.as_ref());
+        let solution = solution.map_err(solving).map_err(at)?;
         let modes = LinearAssembly::new(&assembly, &solver, &solution, DampingLaws::default())
             .and_then(|linear| turning.equations((&assembly, &solver), (&solution, &linear), speed));
         let modes = modes.map_err(solving).map_err(at)?.modes();

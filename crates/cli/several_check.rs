@@ -2,6 +2,7 @@
 
 use comm::print;
 use dynamics::RingMemory;
+use dynamics::motion::check_supported;
 use results::answer;
 use results::failure::Failure;
 use results::memory::{forecast, forecast_modes_of_list};
@@ -44,6 +45,9 @@ pub fn check(scene: &SeveralScene) -> Result<(), Failure> {
             continue;
         }
         let model = &assembly.bearings[i].model;
+        if matches!(scene.analysis, Analysis::Dynamic(_)) {
+            check_supported(model).map_err(Failure::solving)?;
+        }
         let rings = print_rings(model)?;
         let (start, steps) = forecast((&scene.analysis, model), rings.memory, rings.motion);
         peak += steps.unwrap_or(0).max(start);

@@ -34,7 +34,7 @@ use crate::several::{self, make_folder, require_same_list, say_types, solving, w
 use crate::several_files::{close_bearing, create_files, resume_all, resume_tables};
 use crate::several_ledger::check_ledgers;
 use crate::several_read::{ReadList, read_list, require_memory_of_all};
-use crate::several_ready::{ready, require_space};
+use crate::several_ready::{ready, require_space, say_left_out};
 use crate::several_state;
 
 /// Runs the motion from its equilibrium.
@@ -68,6 +68,7 @@ pub fn run(
     assembly.release();
     progress.stage("factoring the effective matrices");
     let motion = laps.time(FACTOR, || ready(scene, dynamic, &assembly))?;
+    say_left_out(&motion, &assembly, &progress);
     let state = motion.start(&solution);
     let placed = scene.bearings.iter().zip(&solution.bearings);
     let placed = placed.map(|(bearing, found)| several::placed(&bearing.scene, found));
@@ -127,6 +128,7 @@ pub fn resume(
     laps.add(READ, start.elapsed().as_secs_f64());
     progress.stage("factoring the effective matrices");
     let motion = laps.time(FACTOR, || ready(&scene, &dynamic, &assembly))?;
+    say_left_out(&motion, &assembly, &progress);
     let restored = several_state::restore(&bearings, &motion, assembly.shaft.n(), (&dir, step));
     let restored = agree(restored)?;
     let first = ListState::of_motion(&assembly, &motion, &restored.state);

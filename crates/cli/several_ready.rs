@@ -3,12 +3,14 @@
 use std::path::Path;
 
 use assembly::{Assembly, AssemblyError, AssemblyMotion};
+use contact::Side;
 use dynamics::effects::Now;
 use results::disk::Forecast;
 use results::failure::Failure;
 use scene::{Dynamic, SeveralScene, loads_on_shaft, settings};
 
 use crate::options::Limits;
+use crate::progress::Progress;
 use crate::several::solving;
 
 /// Fails where the disk has no room for the files of all bearings after a step.
@@ -43,4 +45,15 @@ pub fn ready<'a>(
         })
     };
     AssemblyMotion::new(assembly, of_bearings.collect(), speed, Box::new(load)).map_err(solving)
+}
+
+/// Says of which rings the inertia of the elastic part is left out.
+pub fn say_left_out(motion: &AssemblyMotion<'_>, assembly: &Assembly, progress: &Progress) {
+    for (bearing, mounted) in motion.bearings.iter().zip(&assembly.bearings) {
+        for side in Side::BOTH {
+            if let Some(note) = bearing.left_out(side).map(|of| of.note()) {
+                progress.stage(&format!("{} ring of {:?}: {note}", side.name(), mounted.name));
+            }
+        }
+    }
 }

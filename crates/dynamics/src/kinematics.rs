@@ -59,6 +59,20 @@ impl Speed {
         piecewise_linear(&self.times, &self.values, t)[1]
     }
 
+    /// Largest magnitude at any time, rad/s.
+    pub fn largest(&self) -> f64 {
+        self.values
+            .iter()
+            .fold(0.0, |largest, speed| speed.abs().max(largest))
+    }
+
+    /// Largest magnitude of the angular acceleration at any time, rad/s^2.
+    pub fn largest_rate(&self) -> f64 {
+        let slopes = self.times.windows(2).zip(self.values.windows(2));
+        let slopes = slopes.map(|(times, speeds)| (speeds[1] - speeds[0]) / (times[1] - times[0]));
+        slopes.fold(0.0, |largest, slope| slope.abs().max(largest))
+    }
+
     /// Angle turned since t = 0, rad: the exact integral.
     pub fn angle(&self, t: f64) -> f64 {
         let (mut angle, mut from) = (0.0, 0.0);

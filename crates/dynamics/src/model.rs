@@ -159,6 +159,25 @@ pub struct Model {
     pub tolerances: Tolerances,
 }
 
+/// From where on the inertia of a ring's elastic part in its turning frame acts.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct InertiaLimit {
+    /// Largest speed of the ring at any time, rad/s.
+    pub largest_speed: f64,
+    /// Largest acceleration of it, rad/s^2.
+    pub largest_acceleration: f64,
+    /// Share of the forces on the ring below which the inertia is left out; 0: it always acts.
+    pub negligible: f64,
+}
+
+impl InertiaLimit {
+    /// Share of the forces on a ring with this first natural frequency, rad/s, that the inertia of its elastic part is:
+    /// centrifugal, Coriolis and Euler forces.
+    pub fn share(&self, first_frequency: f64) -> f64 {
+        (self.largest_speed * self.largest_speed + self.largest_acceleration) / first_frequency.powi(2)
+    }
+}
+
 /// What an effect with loads is in a bearing.
 pub trait Effect: Send + Sync {
     /// Name of its scene table.
@@ -170,6 +189,11 @@ pub trait Effect: Send + Sync {
     /// Whether it is the inertia of a ring's turning frame.
     fn turns_frame(&self, _side: Side) -> bool {
         false
+    }
+
+    /// From where on the inertia of a ring's elastic part in its turning frame acts; None where there is no frame.
+    fn inertia_limit(&self, _side: Side) -> Option<InertiaLimit> {
+        None
     }
 
     /// Whether the stress of a ring in its turning frame stiffens it.
@@ -283,7 +307,12 @@ impl Model {
         self.effects.iter().any(|effect| effect.turns_frame(side))
     }
 
-    /// The frame of a ring.
+    /// From where on the inertia of a ring's elastic part acts; None without its turning frame.
+    pub fn inertia_limit(&self, side: Side) -> Option<InertiaLimit> {
+        self.effects.iter().find_map(|effect| effect.inertia_limit(side))
+    }
+
+    /// The frame of a ring, if the inertia of its elastic part acts.
     pub fn frame(&self, side: Side) -> Frame {
         let stiffens = self.effects.iter().any(|effect| effect.stiffens(side));
         match (self.turns_frame(side), stiffens) {
@@ -291,6 +320,11 @@ impl Model {
             (true, false) => Frame::Turning,
             (true, true) => Frame::Stiffened,
         }
+    }
+
+    /// Whether the stress of its turning stiffens a ring.
+    pub fn is_stiffened(&self, side: Side) -> bool {
+        self.frame(side) == Frame::Stiffened
     }
 
     /// The seat of the outer ring, if it slides along the axis.

@@ -52,6 +52,17 @@ pub enum RingError {
         /// Why not.
         reason: String,
     },
+    /// The first natural frequency of a ring is not found.
+    #[error(
+        "the first natural frequency of the {side} ring is not found: {source}; \
+         with effects.frame_rotation.negligible = 0 it is not asked for"
+    )]
+    FirstFrequency {
+        /// `inner` or `outer`.
+        side: &'static str,
+        /// Cause.
+        source: DenseError,
+    },
     /// Another rank has failed.
     #[error("on rank {rank}: {message}")]
     OnRank {
@@ -91,6 +102,14 @@ pub enum RingError {
 }
 
 impl RingError {
+    /// A ring whose stress does not stiffen it, and why.
+    pub(crate) fn no_stress_stiffening(side: &'static str, reason: &str) -> RingError {
+        RingError::NoStressStiffening {
+            side,
+            reason: reason.to_string(),
+        }
+    }
+
     /// Whether the cause is in what a user gave, not in its solution: a surface that holds nothing, an element, too
     /// many sectors.
     pub fn is_of_input(&self) -> bool {

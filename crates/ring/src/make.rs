@@ -8,7 +8,7 @@ use crate::expansion::centrifugal_expansion;
 use crate::factored::FactoredBody;
 use crate::harmonic::make::harmonic_body;
 use crate::harmonic::periodic::Periodic;
-use crate::model::{Backend, RingModel};
+use crate::model::{Backend, Hold, RingModel};
 use crate::mount::MountRows;
 use crate::nodal::sector::SectorBody;
 use crate::nodal::sparse::SparseBody;
@@ -66,7 +66,10 @@ pub fn body_beside(
         hold: ring.hold,
         partner: settings.partner,
     };
-    check_stiffening(name, ring, settings)?;
+    match settings.frame {
+        Frame::Stiffened => check_stiffening(name, ring, settings.backend)?,
+        Frame::Still | Frame::Turning => (),
+    }
     let held = HeldRing {
         damping: settings.damping,
         ..HeldRing::new(name, ring, how, settings.backend)?
@@ -97,18 +100,29 @@ pub fn body_beside(
     }
 }
 
-/// Refuses a ring that is not stiffened by the stress of its turning.
-fn check_stiffening(name: &'static str, ring: &RingModel, settings: BodySettings) -> Result<(), RingError> {
-    let reason = match (settings.frame, settings.backend) {
-        (Frame::Still | Frame::Turning, _) => return Ok(()),
-        (Frame::Stiffened, Backend::Sector(_)) => "solver.backend = \"sector\" cuts it into sectors",
-        (Frame::Stiffened, _) if ring.tie.is_some() => "it is tied to a body",
-        (Frame::Stiffened, _) => return Ok(()),
+/// Refuses a ring that is not stiffened by the stress of its turning, as far as that is known without its sectors.
+fn check_stiffening(name: &'static str, ring: &RingModel, backend: Backend) -> Result<(), RingError> {
+    let reason = match (backend, &ring.tie) {
+        (Backend::Sector(_), _) => "solver.backend = \"sector\" cuts it into sectors",
+        (_, Some(_)) => "it is tied to a body",
+        (_, None) => return Ok(()),
     };
-    Err(RingError::NoStressStiffening {
-        side: name,
-        reason: reason.to_string(),
-    })
+    Err(RingError::no_stress_stiffening(name, reason))
+}
+
+/// Refuses a ring that is not stiffened by the stress of its turning, before its body is made. Of a periodic ring it
+/// assembles a sector.
+pub fn require_stiffening(name: &'static str, ring: &RingModel, backend: Backend) -> Result<(), RingError> {
+    check_stiffening(name, ring, backend)?;
+    let held = match ring.hold {
+        Hold::Clamped => ring.mesh.group_nodes(ring.held_group),
+        Hold::MeanMotion | Hold::Free => Vec::new(),
+    };
+    let periodic = Periodic::new(ring, name, backend, &held)?;
+    match periodic.ok().and_then(|periodic| periodic.unstiffened(ring)) {
+        Some(reason) => Err(RingError::no_stress_stiffening(name, reason)),
+        None => Ok(()),
+    }
 }
 
 /// The body of a ring, held so, with the linear solver that fits it.

@@ -32,6 +32,9 @@
 //! the vectors of a step, 390 n for each of two step files that wait to be written. The last two numbers are measured:
 //! see `tests/memory.rs`. Making takes 24 n for each functional whose column is solved at the same time.
 //!
+//! A ring that the stress of its turning stiffens has one matrix more: half of what couplings take of K and M, or, of
+//! one sparse factor, a value for each pair of nodes, twice while it is made.
+//!
 //! The threads need not be in step, and the measured peak is then lower, down to that of one thread.
 
 use crate::mount::COLUMNS_AT_ONCE;
@@ -61,6 +64,9 @@ const QUEUED_BYTES: usize = 390;
 
 /// Blocks and lists of a sector's couplings in motion: whole and held, products and stress, bytes per coupling.
 const MOTION_COUPLING_BYTES: usize = 900;
+
+/// The same of the stiffness by the stress of turning: one matrix beside stiffness and mass.
+const STRESS_COUPLING_BYTES: usize = MOTION_COUPLING_BYTES / 2;
 
 /// What the search for periodicity holds beside the mesh, bytes per node.
 const SEARCH_BYTES: usize = 250;
@@ -163,6 +169,8 @@ pub struct MotionMemory {
     pub kept: usize,
     /// Each step that waits to be written.
     pub queued: usize,
+    /// What the stiffness by the stress of turning adds where the ring has it.
+    pub stress: usize,
 }
 
 impl MotionSizes {
@@ -177,6 +185,7 @@ impl MotionSizes {
             making: kept + 24 * self.n_mount.min(COLUMNS_AT_ONCE) * self.n_nodes,
             kept,
             queued: QUEUED_BYTES * self.n_nodes,
+            stress: STRESS_COUPLING_BYTES * self.n_couplings,
         }
     }
 }
@@ -204,6 +213,17 @@ impl MotionMemory {
                 + 24 * mesh.connectivity.len()
                 + 48 * mesh.kind.n_corners() * mesh.n_elements(),
             queued: QUEUED_BYTES * mesh.n_nodes(),
+            // Of all dofs while it is assembled, then of the nodes.
+            stress: 2 * node_mass,
+        }
+    }
+
+    /// That of a ring that its stress stiffens.
+    pub fn stiffened(self) -> MotionMemory {
+        MotionMemory {
+            making: self.making + self.stress,
+            kept: self.kept + self.stress,
+            ..self
         }
     }
 }
@@ -267,6 +287,7 @@ mod tests {
                 making,
                 kept,
                 queued: 7,
+                stress: 5,
             })
         };
         let peak = |rings, queued, threads| forecast_motion_peak(rings, queued, threads) - PROGRAM_BYTES;
@@ -275,6 +296,9 @@ mod tests {
         assert_eq!(peak([ring(90, 40), ring(80, 30)], 1, 1), 120);
         assert_eq!(peak([ring(90, 40), None], 1, 1), 90);
         assert_eq!(peak([ring(90, 80), ring(80, 30)], 10, 2), 80 + 30 + 140);
+        let stiffened = ring(90, 80).map(MotionMemory::stiffened);
+        assert_eq!(peak([stiffened, None], 1, 1), 95);
+        assert_eq!(peak([stiffened, None], 10, 1), 85 + 70);
     }
 
     /// If this failed, a batch job sized by the forecast would be killed, or reserve memory it never uses.

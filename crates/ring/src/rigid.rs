@@ -28,14 +28,35 @@ impl dyn ElasticBody + '_ {
     /// Inertia of the ring as a rigid body about the centre of its groove circle: of the mass matrix, with the means of
     /// x and y. Costs five products with that matrix. Collective.
     pub fn rigid_inertia(&self) -> RigidInertia {
+        of_revolution(&self.rigid_rows())
+    }
+
+    /// How far the inertia of the ring as a rigid body is from that of a body of revolution in any motion across the
+    /// axis, over mass and transverse moment of inertia. Cost as of its rigid inertia. Collective.
+    pub fn unroundness(&self) -> f64 {
+        let rows = self.rigid_rows();
+        let round = of_revolution(&rows);
+        let arm = (round.transverse / round.mass).sqrt();
+        let unit = [1.0, 1.0, 1.0, arm, arm, arm];
+        let of_row = |(row, k): (&[f64; 6], usize)| {
+            let mut a = [0.0; 5];
+            a[k] = 1.0;
+            let expected = round.times(a);
+            let off = |i: usize| (row[i] - expected[i]).abs() / (unit[i] * unit[k] * round.mass);
+            [0, 1, 3, 4].map(off).into_iter().fold(0.0, f64::max)
+        };
+        rows[..4].iter().zip([0, 1, 3, 4]).map(of_row).fold(0.0, f64::max)
+    }
+
+    /// Forces in the sense of all rigid motions that the unit acceleration of one takes: of x, y, both tilts, spin.
+    fn rigid_rows(&self) -> [[f64; 6]; 5] {
         let held = self.held();
         let motion = |x: [f64; 3], k: usize| {
             let mut q = [0.0; RIGID_MOTIONS];
             q[k] = 1.0;
             held.coordinates.whole_rigid_motion(x, q)
         };
-        // Forces in the sense of all rigid motions that the unit acceleration of one of them takes.
-        let row = |k: usize| {
+        [0, 1, 3, 4, 5].map(|k: usize| {
             let field = held.places.field(|x| motion(x, k));
             let product = self.matrices().nodal_mass_product(&field);
             held.places.sum(|node, x| {
@@ -43,13 +64,16 @@ impl dyn ElasticBody + '_ {
                 let along = |k: usize| -> f64 { motion(x, k).iter().zip(f).map(|(u, f)| u * f).sum() };
                 [0, 1, 2, 3, 4, 5].map(along)
             })
-        };
-        let [x, y, tilt_x, tilt_y, spin] = [0, 1, 3, 4, 5].map(row);
-        RigidInertia {
-            mass: 0.5 * (x[0] + y[1]),
-            first_moment: 0.5 * (x[4] - y[3]),
-            transverse: 0.5 * (tilt_x[3] + tilt_y[4]),
-            polar: spin[5],
-        }
+        })
+    }
+}
+
+/// The body of revolution with these forces, with the means of x and y.
+fn of_revolution([x, y, tilt_x, tilt_y, spin]: &[[f64; 6]; 5]) -> RigidInertia {
+    RigidInertia {
+        mass: 0.5 * (x[0] + y[1]),
+        first_moment: 0.5 * (x[4] - y[3]),
+        transverse: 0.5 * (tilt_x[3] + tilt_y[4]),
+        polar: spin[5],
     }
 }

@@ -11,6 +11,9 @@
 //! every step and are iterated there; S keeps its one factor. Statics takes the centrifugal and Euler forces of the
 //! undeformed rings: the rest is (W / first natural frequency)^2 of it.
 //!
+//! In motion, all but the load of the undeformed ring is left out where it is nothing, below a share `negligible` of
+//! the forces ([`crate::motion::LeftOut`]).
+//!
 //! The stress of a turning ring stiffens it where the scene asks for it ([`ring::expansion`]). An equilibrium has no
 //! use of it: what stands in space runs round the turning ring, and the inertia of the ring in that motion takes back
 //! what the stress holds, rho W^2 r^2 in tension along the ring (that of a running chain, whatever its shape).
@@ -28,7 +31,7 @@ use super::rules::{Case, judge, judge_key, percent};
 use super::table::{self, About, Context, Need, Setting, SpeedRole, Trial};
 use crate::error::DynamicsError;
 use crate::kinematics::RingSpeeds;
-use crate::model::{Effect, Model};
+use crate::model::{Effect, InertiaLimit, Model};
 use ring::Hold;
 use ring::division::body_load;
 
@@ -37,7 +40,13 @@ use ring::division::body_load;
 const OVAL_SHARE: f64 = 0.01;
 
 const EXAMPLE: &str = "[effects.frame_rotation]        # needs [speed] and a flexible ring that turns\n\
-stress_stiffening = true        # optional: their stress of turning stiffens them, in motion; default false\n";
+stress_stiffening = true        # optional: their stress of turning stiffens them, in motion; default false\n\
+negligible = 1e-6               # optional, 0 to 1e-2: inertia below this share of forces is left out; default 1e-6\n";
+
+/// Share of the forces on a ring below which the inertia of its elastic part is left out.
+const NEGLIGIBLE: f64 = 1e-6;
+/// Largest such share.
+const MOST_NEGLIGIBLE: f64 = 1e-2;
 
 /// The table of a scene.
 #[derive(Clone, Debug, Deserialize, PartialEq)]
@@ -46,6 +55,13 @@ pub struct FrameRotationTable {
     /// Whether the stress of turning rings stiffens them.
     #[serde(default)]
     pub stress_stiffening: bool,
+    /// Share of the forces on a ring below which the inertia of its elastic part is left out; 0: never.
+    #[serde(default = "default_negligible")]
+    pub negligible: f64,
+}
+
+fn default_negligible() -> f64 {
+    NEGLIGIBLE
 }
 
 impl table::EffectTable for FrameRotationTable {
@@ -85,7 +101,7 @@ impl table::EffectTable for FrameRotationTable {
 
     fn load(&self, setting: Setting<'_>) -> Result<Option<Box<dyn Effect>>, DynamicsError> {
         let speeds = setting.speeds.clone();
-        let plain = FrameRotation::new(speeds);
+        let plain = FrameRotation::new(speeds).negligible_below(self.negligible);
         Ok(Some(Box::new(match self.stress_stiffening {
             true => plain.stiffened(),
             false => plain,
@@ -93,6 +109,13 @@ impl table::EffectTable for FrameRotationTable {
     }
 
     fn check(&self, context: Context, problems: &mut Problems) {
+        problems.require(
+            (0.0..=MOST_NEGLIGIBLE).contains(&self.negligible),
+            "effects.frame_rotation.negligible",
+            self.negligible,
+            "expected a share of the forces from 0, which always keeps the inertia of the elastic part, to 0.01; 1e-6 \
+             is usual",
+        );
         if self.stress_stiffening && context.is_without_inertia {
             problems.add(
                 "effects.frame_rotation.stress_stiffening does nothing in a scene without inertia: a shape that stands \
@@ -165,6 +188,8 @@ pub struct FrameRotation {
     speeds: RingSpeeds,
     /// Whether the stress of the rings stiffens them.
     stiffens: bool,
+    /// Share of the forces on a ring below which the inertia of its elastic part is left out.
+    negligible: f64,
 }
 
 impl FrameRotation {
@@ -173,7 +198,13 @@ impl FrameRotation {
         FrameRotation {
             speeds: speeds.into(),
             stiffens: false,
+            negligible: 0.0,
         }
+    }
+
+    /// The same, without the inertia of the elastic part of a ring where its share of the forces stays below this.
+    pub fn negligible_below(self, negligible: f64) -> FrameRotation {
+        FrameRotation { negligible, ..self }
     }
 
     /// The same of rings that the stress of their turning stiffens ([`ring::expansion`]).
@@ -192,6 +223,15 @@ impl Effect for FrameRotation {
 
     fn turns_frame(&self, side: Side) -> bool {
         !self.speeds.of(side).is_zero()
+    }
+
+    fn inertia_limit(&self, side: Side) -> Option<InertiaLimit> {
+        let speed = self.speeds.of(side);
+        self.turns_frame(side).then(|| InertiaLimit {
+            largest_speed: speed.largest(),
+            largest_acceleration: speed.largest_rate(),
+            negligible: self.negligible,
+        })
     }
 
     fn stiffens(&self, side: Side) -> bool {

@@ -98,9 +98,16 @@ impl Motion<'_> {
         let back = -self.frame_angle(side, self.weighted_time(expected.span));
         let moving = self.rings[side.index()].as_ref();
         let load = moving.zip(loads.rings[side.index()].as_ref());
+        let mut load = load.map(|(moving, load)| moving.body.load(&turn_nodal(load, back)));
+        if let Some(inertia) = self.undeformed_load(side, loads) {
+            load = Some(match load {
+                Some(load) => load.iter().zip(&inertia).map(|(a, b)| a + b).collect(),
+                None => inertia,
+            });
+        }
         KnownLoad {
-            load: load.map(|(moving, load)| moving.body.load(&turn_nodal(load, back))),
-            turn: loads.frames[side.index()],
+            load,
+            turn: self.elastic_turn(side, loads),
             body_turn: self.body_turn(side, self.weighted_time(expected.span)),
         }
     }

@@ -94,9 +94,13 @@ impl Motion<'_> {
     /// Whether the inertia of a frame is found by rounds: of a ring's, or of a body on the shaft.
     fn has_turning_frames(&self, part: &StepPart<'_>) -> bool {
         let time = self.weighted_time(part.span);
-        let of_body = |side: Side| self.body_turn(side, time).is_some();
-        let frames = &part.expected.loads.frames;
-        frames.iter().any(Option::is_some) || Side::BOTH.into_iter().any(of_body)
+        let loads = &part.expected.loads;
+        let turns = |side: Side| {
+            self.elastic_turn(side, loads)
+                .or(self.body_turn(side, time))
+                .is_some()
+        };
+        Side::BOTH.into_iter().any(turns)
     }
 
     /// Speed of the frame that turns fastest, rad/s.

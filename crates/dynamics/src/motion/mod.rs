@@ -19,6 +19,7 @@ mod cache;
 mod cage;
 mod cage_state;
 mod close;
+mod elastic_inertia;
 mod finish;
 mod finite;
 mod free;
@@ -44,6 +45,7 @@ mod surfaces;
 
 pub use cache::StepCache;
 pub use cage_state::CageState;
+pub use elastic_inertia::LeftOut;
 pub use free_state::{ContactTraction, FreeState};
 pub use ledger::{CageLedger, FrictionLedger, Ledger};
 pub use limits::{ContactLimit, Exceeded};

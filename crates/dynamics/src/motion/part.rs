@@ -198,7 +198,7 @@ impl Motion<'_> {
             shaft_polar: self.model.shaft_inertia.polar,
             body_polar: self.model.carried_inertia().map_or(0.0, |body| body.polar),
             tilt_by_stress: self.tilt_by_stress,
-            takes: if self.model.turns_frame(inner) {
+            takes: if self.has_elastic_inertia(inner) {
                 StepTakes::Turning
             } else {
                 StepTakes::Still

@@ -14,13 +14,20 @@ use ring::memory::forecast_motion_peak;
 use ring::rigid::RigidInertia;
 use ring::statics::iterations_note;
 use ring::{
+<<<<<<< HEAD
     BodySettings, FactoredBody, Frame, FrameTurn, Hold, Inventory, MadeRing, Oscillators, RingModel,
     StepFactor, StepScheme, body_beside,
+=======
+    BodySettings, ElasticBody, Frame, FrameTurn, Hold, Inventory, Oscillators, RingModel, StepFactor,
+    StepScheme, elastic_body, require_stiffening,
+>>>>>>> 7f796bb18d982adc687f0e8dfb17ca64b118955c
 };
 
+use super::elastic_inertia::{LeftOut, left_out};
 use super::state::MotionSettings;
 use crate::bearing::partner;
 use crate::costs;
+use crate::effects::Loads;
 use crate::error::DynamicsError;
 use crate::model::{ContactMode, Model, ShaftDof};
 use crate::raceway::Raceway;
@@ -33,7 +40,13 @@ pub struct MovingRing {
     /// The elastic body.
     pub body: Arc<FactoredBody>,
     /// Where contacts find it.
+<<<<<<< HEAD
     pub raceway: Arc<Raceway>,
+=======
+    pub raceway: Raceway,
+    /// Inertia of its elastic part in its turning frame, where that is nothing.
+    pub(super) left_out: Option<LeftOut>,
+>>>>>>> 7f796bb18d982adc687f0e8dfb17ca64b118955c
 }
 
 /// A model ready to move.
@@ -69,8 +82,14 @@ impl<'a> Motion<'a> {
         check_supported(model)?;
         check_free(model, &settings)?;
         let build = |side: Side| {
+<<<<<<< HEAD
             let moving = |ring| moving_ring((ring, side), model, &settings, others);
             model.ring(side).map(moving).transpose()
+=======
+            let ring = model.ring(side);
+            ring.map(|ring| moving_ring(model, &settings, (side, ring)))
+                .transpose()
+>>>>>>> 7f796bb18d982adc687f0e8dfb17ca64b118955c
         };
         let [inner, outer] = model.backend.try_on_sides(build)?;
         let turning = wobbles(model, &settings.speeds).then(|| {
@@ -183,6 +202,26 @@ impl<'a> Motion<'a> {
         Some(note)
     }
 
+    /// What is left out of the inertia of a ring's elastic part; None where all acts.
+    pub fn left_out(&self, side: Side) -> Option<&LeftOut> {
+        self.rings[side.index()].as_ref()?.left_out.as_ref()
+    }
+
+    /// Whether the inertia of its turning frame acts on the elastic part of a ring.
+    pub(super) fn has_elastic_inertia(&self, side: Side) -> bool {
+        self.model.turns_frame(side) && self.left_out(side).is_none()
+    }
+
+    /// Turning of the frame of a ring whose elastic part has inertia in it.
+    pub(super) fn elastic_turn(&self, side: Side, loads: &Loads) -> Option<FrameTurn> {
+        loads.frames[side.index()].filter(|_| self.left_out(side).is_none())
+    }
+
+    /// Load of the undeformed ring where its elastic part has no inertia, a vector of the body.
+    pub(super) fn undeformed_load(&self, side: Side, loads: &Loads) -> Option<Vec<f64>> {
+        Some(self.left_out(side)?.load(loads.frames[side.index()]?))
+    }
+
     /// Number of balls.
     pub fn n_balls(&self) -> usize {
         self.model.geometry.n_balls
@@ -229,6 +268,7 @@ impl<'a> Motion<'a> {
     }
 }
 
+<<<<<<< HEAD
 /// A ring that moves, with what it shares with those of other bearings.
 fn moving_ring(
     (ring, side): (&RingModel, Side),
@@ -259,6 +299,36 @@ fn moving_ring(
     Ok(MovingRing {
         body,
         raceway: raceway.unwrap_or_else(|| Arc::new(Raceway::new(ring, model.contact.mode))),
+=======
+/// Assembles a ring, and finds whether its elastic part has inertia in its turning frame.
+fn moving_ring(
+    model: &Model,
+    settings: &MotionSettings,
+    (side, ring): (Side, &RingModel),
+) -> Result<MovingRing, DynamicsError> {
+    let body = |frame: Frame| {
+        let settings = BodySettings {
+            partner: partner(model, side),
+            damping: settings.rayleigh,
+            backend: model.backend,
+            frame,
+        };
+        elastic_body(side.name(), ring, settings)
+    };
+    let turning = body(model.frame(side))?;
+    let wobbles = wobbles(model, &settings.speeds);
+    let left_out = left_out((model, side), (ring, &*turning), wobbles)?;
+    Ok(MovingRing {
+        body: match left_out {
+            Some(_) => {
+                drop(turning);
+                body(Frame::Still)?
+            }
+            None => turning,
+        },
+        raceway: Raceway::new(ring, model.contact.mode),
+        left_out,
+>>>>>>> 7f796bb18d982adc687f0e8dfb17ca64b118955c
     })
 }
 
@@ -300,6 +370,11 @@ pub fn check_supported(model: &Model) -> Result<(), DynamicsError> {
             "real surfaces ([[profiles.*]], contact.edges) beside temperatures that change; keep [effects.temperature] \
              constant",
         );
+    }
+    for side in Side::BOTH {
+        if let (true, Some(ring)) = (model.is_stiffened(side), model.ring(side)) {
+            require_stiffening(side.name(), ring, model.backend)?;
+        }
     }
     Ok(())
 }

@@ -18,7 +18,7 @@ use dynamics::{Backend, ContactMode, Hold, Model, RingModel, StaticSolution};
 use fem::Material;
 use mesh::{Facet, Mesh, Origin};
 use ring::statics::RingSolver;
-use ring::{BodySettings, Frame, Partner, elastic_body};
+use ring::{BodySettings, Frame, Partner, elastic_body, require_stiffening};
 use support::rings::{Level, ring};
 use support::{Case, equilibrium, on_threads, steel};
 
@@ -104,6 +104,8 @@ fn a_tied_ring_is_not_stiffened_by_its_stress() {
         "effects.frame_rotation.stress_stiffening is not there for the outer ring: it is tied to a body; remove it, \
          or set it to false"
     );
+    let before = require_stiffening("outer", &tied, Backend::Auto).unwrap_err();
+    assert_eq!(before.to_string(), error.to_string());
 }
 
 /// Wrong: more functions on a rigid body would not come to a clamped seat.

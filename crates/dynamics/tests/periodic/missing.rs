@@ -7,7 +7,7 @@ use std::sync::Arc;
 use contact::Side;
 use dynamics::effects::{FrameRotation, Gravity};
 use dynamics::kinematics::Speed;
-use dynamics::motion::{Integrator, Motion, MotionSettings};
+use dynamics::motion::{Integrator, Motion, MotionSettings, check_supported};
 use dynamics::{Backend, Hold, Model, StaticSolver};
 use input::Schedule;
 use mesh::{Facet, Mesh};
@@ -264,6 +264,8 @@ fn a_ring_with_a_keyway_is_not_stiffened_by_its_stress() {
         "effects.frame_rotation.stress_stiffening is not there for the inner ring: it is rotationally periodic only up \
          to a defect; remove it, or set it to false"
     );
+    let before = check_supported(&model).unwrap_err();
+    assert_eq!(before.to_string(), error.to_string());
 }
 
 /// Wrong: the keyway would not matter in these tests, or the log would not say what and where it is.

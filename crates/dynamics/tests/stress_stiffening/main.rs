@@ -12,10 +12,10 @@ use contact::{Groove, Side};
 use dynamics::{Hold, RingModel, Sectors};
 use mesh::{ElementKind, Section, revolve};
 use ring::expansion::centrifugal_expansion;
-use ring::statics::{RingSolver, StaticSettings};
+use ring::statics::{Numbers, Prepared, RingSolver, StaticSettings};
 use ring::{
     Backend, BodySettings, ElasticBody, End, Feet, Frame, FrameTurn, Integrator, KnownLoad, Partner,
-    PortForces, RingState, Settling, StepScheme, elastic_body,
+    PortForces, RingState, Settling, StepScheme, elastic_body, require_stiffening,
 };
 
 use support::rings::Level;
@@ -403,6 +403,24 @@ fn a_shape_that_stands_in_space_is_that_of_the_equilibrium() {
     }
 }
 
+/// Wrong: `raceway check` would forecast another memory than a run, or leave out the matrix of the stress. Of a ring
+/// that harmonics solve, and of one with one sparse factor.
+#[test]
+fn the_stress_is_in_the_forecast_of_memory() {
+    let of = support::rings::ring(Side::Inner, Level::hex8(36, 4, 1, 1), Hold::Clamped);
+    for backend in [Backend::Auto, Backend::Sparse] {
+        let [with, without] = [Frame::Stiffened, Frame::Turning].map(|frame| {
+            let body = elastic_body("inner", &of, settings(backend, frame)).unwrap();
+            body.memory().unwrap()
+        });
+        let before = StaticSettings { backend, ..STATICS };
+        let before = Prepared::new(&of, before, Numbers::Pattern).unwrap().stiffness;
+        assert_eq!(with, before.motion().unwrap().stiffened());
+        assert_eq!(without, before.motion().unwrap());
+        assert!(with.kept > without.kept && with.making > without.making);
+    }
+}
+
 /// Wrong: a ring that its stress cannot stiffen would move as if there were none.
 #[test]
 fn a_ring_in_sectors_is_refused() {
@@ -417,4 +435,8 @@ fn a_ring_in_sectors_is_refused() {
          cuts it into sectors; remove it, or set it to false"
     );
     assert!(error.is_of_input());
+    let before = require_stiffening("inner", &of, sectors).unwrap_err();
+    assert_eq!(before.to_string(), error.to_string());
+    assert!(require_stiffening("inner", &of, Backend::Auto).is_ok());
+    assert!(require_stiffening("inner", &of, Backend::Sparse).is_ok());
 }

@@ -31,7 +31,11 @@ impl ElasticBody for HarmonicBody {
     }
 
     fn memory(&self) -> Option<MotionMemory> {
-        Some(self.harmonics.sizes(&self.held).memory())
+        let memory = self.harmonics.sizes(&self.held).memory();
+        Some(match self.stencils.stress {
+            Some(_) => memory.stiffened(),
+            None => memory,
+        })
     }
 
     fn shape(&self) -> RingShape {

@@ -198,18 +198,9 @@ impl Periodic {
         held: &[usize],
         expansion: &[f64],
     ) -> Result<Periodic, RingError> {
-        let refuse = |reason: &str| {
-            Err(RingError::NoStressStiffening {
-                side,
-                reason: reason.to_string(),
-            })
-        };
-        if self.defect.is_some() {
-            return refuse("it is rotationally periodic only up to a defect");
-        }
-        let periodicity = match ring.periodicity() {
-            Ok(periodicity) => periodicity,
-            Err(_) => return refuse("its sectors are equal but for groups of facets"),
+        let periodicity = match (self.unstiffened(ring), ring.periodicity()) {
+            (None, Ok(periodicity)) => periodicity,
+            (reason, _) => return Err(RingError::no_stress_stiffening(side, reason.unwrap_or_default())),
         };
         let of_sector = fem::assemble_sector_prestress(&ring.mesh, periodicity, &ring.material, expansion)
             .map_err(|source| RingError::Fem { side, source })?;
@@ -226,6 +217,15 @@ impl Periodic {
         self.held.sectors.stress = Some(stress.restricted(&keep));
         whole.stress = Some(stress);
         Ok(self)
+    }
+
+    /// Why its stress does not stiffen the ring; None where it may.
+    pub fn unstiffened(&self, ring: &RingModel) -> Option<&'static str> {
+        if self.defect.is_some() {
+            return Some("it is rotationally periodic only up to a defect");
+        }
+        let has_sectors = ring.periodicity().is_ok();
+        (!has_sectors).then_some("its sectors are equal but for groups of facets")
     }
 
     /// The whole ring for nodal vectors of `mesh`, which may lack nodes of the regular one.

@@ -55,9 +55,13 @@ impl SparseBody {
                 side: held.name,
                 source,
             })?;
+        let memory = MotionMemory::sparse(&ring.mesh, matrices.n_entries(), &symbolic);
         Ok(NodalBody {
             solver: SparseSolver {
-                memory: MotionMemory::sparse(&ring.mesh, matrices.n_entries(), &symbolic),
+                memory: match expansion {
+                    Some(_) => memory.stiffened(),
+                    None => memory,
+                },
                 matrices,
                 symbolic: Box::new(symbolic),
                 why,

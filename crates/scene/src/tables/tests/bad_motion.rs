@@ -388,6 +388,21 @@ fn numbers_that_make_an_integrator_unstable_are_refused() {
     }
 }
 
+/// If this failed, a share that is none would leave out inertia that acts, or silently keep all.
+#[test]
+fn a_negligible_share_of_the_forces_is_small() {
+    let turning = at_rest("inner = \"1800 rpm\"");
+    for (value, shown) in [("-1e-6", "-0.000001"), ("0.1", "0.1"), ("nan", "NaN")] {
+        let keys = format!("[effects.frame_rotation]\nnegligible = {value}");
+        let message = message_of(&turning.replace("[effects.frame_rotation]", &keys), &[]);
+        let expected = format!(
+            "has a problem: effects.frame_rotation.negligible is {shown}; expected a share of the forces from 0, which \
+             always keeps the inertia of the elastic part, to 0.01; 1e-6 is usual"
+        );
+        assert!(message.contains(&expected), "{message}");
+    }
+}
+
 /// If this failed, an effect would be computed without what it needs, or a table would be accepted that does nothing.
 #[test]
 fn effects_without_anything_to_do_are_refused() {

@@ -1,0 +1,111 @@
+//! Whether the inertia of a turning ring's elastic part acts, or is nothing and left out.
+//!
+//! Of the loads of a turning frame ([`crate::effects::frame_rotation`]) those on the undeformed ring are known, and
+//! those of its rigid motion act on the shaft ([`crate::bodies::FrameInertia`]). What is left is that of the elastic
+//! part u_e: centrifugal, Coriolis and Euler forces on it, which depend on the motion and take rounds in every step.
+//! Beside the stiffness they are of the order
+//!
+//! ```text
+//! |W^2 M u_e|  <=  (W / w_1)^2 |K u_e|          in the norm of M^-1, w_1 the first natural frequency as held
+//! ```
+//!
+//! the Euler force W' / w_1^2, and the Coriolis force on a shape of n waves that stands in space 2 n times the first.
+//! Where (W^2 + W') / w_1^2 stays below a limit of the scene for the largest speed and acceleration, they are left out:
+//! the step is that of a frame that stands, under the load of the undeformed ring. Free vibrations feel the Coriolis
+//! force to first order: their frequencies lack a splitting by up to 2 W / w_1 of themselves.
+//!
+//! An upper bound of w_1 comes first, at next to no cost; w_1 itself only where the bound does not decide. The choice
+//! follows from scene and meshes alone: the largest speed is that of the whole table of speeds, however long the run.
+//! These rings keep all: free ones and those tied to a body, whose rigid motion the shaft does not take; those whose
+//! stress stiffens them, because the scene asks for that; and those on a shaft that moves across its axis whose own
+//! inertia is not that of a body of revolution, as `FrameInertia` has it.
+
+use contact::Side;
+use ring::first_frequency::{first_frequency, first_frequency_bound};
+use ring::statics::StaticSettings;
+use ring::{ElasticBody, Frame, FrameTurn, Hold, RingModel};
+
+use crate::bearing::partner;
+use crate::error::DynamicsError;
+use crate::model::{InertiaLimit, Model};
+
+/// Inertia of a ring's elastic part that is left out.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LeftOut {
+    /// First natural frequency of the ring as it is held, less the bound of its error, rad/s.
+    pub first_frequency: f64,
+    /// Largest speed and acceleration, and the share of the forces below which nothing acts.
+    pub limit: InertiaLimit,
+    /// Generalised loads of the undeformed ring by the square of the speed and by the acceleration, of unit values.
+    undeformed: [Vec<f64>; 2],
+}
+
+impl LeftOut {
+    /// Share of the forces on the ring that is left out.
+    pub fn share(&self) -> f64 {
+        self.limit.share(self.first_frequency)
+    }
+
+    /// What is left out, for a log.
+    pub fn note(&self) -> String {
+        format!(
+            "the inertia of its elastic part is left out in its turning frame: about {:.1e} of the forces, (largest \
+             speed^2 + acceleration) / (first natural frequency {:.2} kHz)^2, is below \
+             effects.frame_rotation.negligible = {:e}; free vibrations lack the splitting of their frequencies by up \
+             to 2 speed / frequency = {:.1e}",
+            self.share(),
+            self.first_frequency / std::f64::consts::TAU / 1e3,
+            self.limit.negligible,
+            2.0 * self.limit.largest_speed / self.first_frequency
+        )
+    }
+
+    /// Load of the undeformed ring in its frame, a vector of the body.
+    pub(super) fn load(&self, turn: FrameTurn) -> Vec<f64> {
+        let [square, rate] = &self.undeformed;
+        let sum = |(a, b): (&f64, &f64)| turn.speed * turn.speed * a + turn.acceleration * b;
+        square.iter().zip(rate).map(sum).collect()
+    }
+}
+
+/// What is left out of a ring with this body in its turning frame; None where all acts. The inner ring of a bearing
+/// that `wobbles` moves across its axis. Collective.
+pub(super) fn left_out(
+    (model, side): (&Model, Side),
+    (ring, body): (&RingModel, &dyn ElasticBody),
+    wobbles: bool,
+) -> Result<Option<LeftOut>, DynamicsError> {
+    let Some(limit) = model.inertia_limit(side) else {
+        return Ok(None);
+    };
+    let is_on_partner = ring.hold != Hold::Free && ring.tie.is_none();
+    let is_asked = model.frame(side) == Frame::Turning && limit.negligible > 0.0;
+    let is_small = |frequency: f64| limit.share(frequency) < limit.negligible;
+    if !is_asked || !is_on_partner || !is_small(first_frequency_bound(body, ring)) {
+        return Ok(None);
+    }
+    if wobbles && side == Side::BOTH[0] && body.unroundness() >= limit.negligible {
+        return Ok(None);
+    }
+    let settings = StaticSettings {
+        name: side.name(),
+        partner: partner(model, side),
+        backend: model.backend,
+        n_contacts: 1,
+    };
+    let least = first_frequency(body, ring, settings)?.least();
+    Ok(is_small(least).then(|| LeftOut {
+        first_frequency: least,
+        limit,
+        undeformed: undeformed(body),
+    }))
+}
+
+/// Loads of unit speed and of unit acceleration on the undeformed ring, vectors of the body. Collective.
+fn undeformed(body: &dyn ElasticBody) -> [Vec<f64>; 2] {
+    let load = |field: fn([f64; 3]) -> [f64; 3]| {
+        let field = body.held().places.field(field);
+        body.load(&body.matrices().nodal_mass_product(&field))
+    };
+    [load(|[x, y, _]| [x, y, 0.0]), load(|[x, y, _]| [y, -x, 0.0])]
+}
