@@ -9,11 +9,8 @@ pub mod coordinates;
 pub mod division;
 pub mod error;
 pub mod expansion;
-<<<<<<< HEAD
 pub mod factored;
-=======
 pub mod first_frequency;
->>>>>>> 7f796bb18d982adc687f0e8dfb17ca64b118955c
 mod harmonic;
 mod inertia;
 pub mod integrator;
@@ -46,11 +43,7 @@ pub use error::RingError;
 pub use factored::FactoredBody;
 pub use integrator::{Integrator, StepScheme};
 pub use inventory::Inventory;
-<<<<<<< HEAD
-pub use make::{BodySettings, MadeRing, body_beside, elastic_body};
-=======
-pub use make::{BodySettings, elastic_body, require_stiffening};
->>>>>>> 7f796bb18d982adc687f0e8dfb17ca64b118955c
+pub use make::{BodySettings, MadeRing, body_beside, elastic_body, require_stiffening};
 pub use model::{Backend, Hold, NodeMasses, RACEWAY_GROUP, RingModel, Sectors};
 pub use oscillators::Oscillators;
 pub use seat::{OwnStress, RadialProfile, SeatAction, SeatField};

@@ -14,13 +14,8 @@ use ring::memory::forecast_motion_peak;
 use ring::rigid::RigidInertia;
 use ring::statics::iterations_note;
 use ring::{
-<<<<<<< HEAD
     BodySettings, FactoredBody, Frame, FrameTurn, Hold, Inventory, MadeRing, Oscillators, RingModel,
-    StepFactor, StepScheme, body_beside,
-=======
-    BodySettings, ElasticBody, Frame, FrameTurn, Hold, Inventory, Oscillators, RingModel, StepFactor,
-    StepScheme, elastic_body, require_stiffening,
->>>>>>> 7f796bb18d982adc687f0e8dfb17ca64b118955c
+    StepFactor, StepScheme, body_beside, require_stiffening,
 };
 
 use super::elastic_inertia::{LeftOut, left_out};
@@ -40,13 +35,11 @@ pub struct MovingRing {
     /// The elastic body.
     pub body: Arc<FactoredBody>,
     /// Where contacts find it.
-<<<<<<< HEAD
     pub raceway: Arc<Raceway>,
-=======
-    pub raceway: Raceway,
+    /// What the body is made with.
+    settings: BodySettings,
     /// Inertia of its elastic part in its turning frame, where that is nothing.
     pub(super) left_out: Option<LeftOut>,
->>>>>>> 7f796bb18d982adc687f0e8dfb17ca64b118955c
 }
 
 /// A model ready to move.
@@ -82,14 +75,9 @@ impl<'a> Motion<'a> {
         check_supported(model)?;
         check_free(model, &settings)?;
         let build = |side: Side| {
-<<<<<<< HEAD
-            let moving = |ring| moving_ring((ring, side), model, &settings, others);
-            model.ring(side).map(moving).transpose()
-=======
             let ring = model.ring(side);
-            ring.map(|ring| moving_ring(model, &settings, (side, ring)))
+            ring.map(|ring| moving_ring((ring, side), model, &settings, others))
                 .transpose()
->>>>>>> 7f796bb18d982adc687f0e8dfb17ca64b118955c
         };
         let [inner, outer] = model.backend.try_on_sides(build)?;
         let turning = wobbles(model, &settings.speeds).then(|| {
@@ -268,30 +256,41 @@ impl<'a> Motion<'a> {
     }
 }
 
-<<<<<<< HEAD
-/// A ring that moves, with what it shares with those of other bearings.
+/// Assembles a ring with what it shares with those of other bearings, and finds whether its elastic part has inertia in
+/// its turning frame.
 fn moving_ring(
     (ring, side): (&RingModel, Side),
     model: &Model,
     settings: &MotionSettings,
     others: &[Motion<'_>],
 ) -> Result<MovingRing, DynamicsError> {
-    let of = |model: &Model, settings: &MotionSettings| BodySettings {
-        partner: partner(model, side),
-        damping: settings.rayleigh,
-        backend: model.backend,
-        frame: model.frame(side),
-    };
     let rings = others.iter().filter_map(|other| {
         let (moving, ring) = (other.rings[side.index()].as_ref()?, other.model.ring(side)?);
         Some((other, moving, ring))
     });
-    let made = rings.clone().map(|(other, moving, ring)| MadeRing {
+    let made = rings.clone().map(|(_, moving, ring)| MadeRing {
         ring,
-        settings: of(other.model, &other.settings),
+        settings: moving.settings,
         body: &moving.body,
     });
-    let body = body_beside(side.name(), ring, of(model, settings), &made.collect::<Vec<_>>())?;
+    let made: Vec<_> = made.collect();
+    let own = |frame: Frame| BodySettings {
+        partner: partner(model, side),
+        damping: settings.rayleigh,
+        backend: model.backend,
+        frame,
+    };
+    let body = |frame: Frame| body_beside(side.name(), ring, own(frame), &made);
+    let turning = body(model.frame(side))?;
+    let wobbles = wobbles(model, &settings.speeds);
+    let left_out = left_out((model, side), (ring, &**turning), wobbles)?;
+    let (frame, body) = match left_out {
+        Some(_) => {
+            drop(turning);
+            (Frame::Still, body(Frame::Still)?)
+        }
+        None => (model.frame(side), turning),
+    };
     let raceway = rings
         .clone()
         .find(|(other, _, like)| other.model.contact.mode == model.contact.mode && like.is_like(ring))
@@ -299,36 +298,8 @@ fn moving_ring(
     Ok(MovingRing {
         body,
         raceway: raceway.unwrap_or_else(|| Arc::new(Raceway::new(ring, model.contact.mode))),
-=======
-/// Assembles a ring, and finds whether its elastic part has inertia in its turning frame.
-fn moving_ring(
-    model: &Model,
-    settings: &MotionSettings,
-    (side, ring): (Side, &RingModel),
-) -> Result<MovingRing, DynamicsError> {
-    let body = |frame: Frame| {
-        let settings = BodySettings {
-            partner: partner(model, side),
-            damping: settings.rayleigh,
-            backend: model.backend,
-            frame,
-        };
-        elastic_body(side.name(), ring, settings)
-    };
-    let turning = body(model.frame(side))?;
-    let wobbles = wobbles(model, &settings.speeds);
-    let left_out = left_out((model, side), (ring, &*turning), wobbles)?;
-    Ok(MovingRing {
-        body: match left_out {
-            Some(_) => {
-                drop(turning);
-                body(Frame::Still)?
-            }
-            None => turning,
-        },
-        raceway: Raceway::new(ring, model.contact.mode),
+        settings: own(frame),
         left_out,
->>>>>>> 7f796bb18d982adc687f0e8dfb17ca64b118955c
     })
 }
 
