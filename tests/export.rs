@@ -144,29 +144,7 @@ fn vtu_files_hold_the_arrays() {
     let outcome = dir.raceway(&["export", "out", "--to", "vtu"]);
     assert_eq!(outcome.code, Some(0), "{}", outcome.stderr);
     let text = dir.text("out/export/step_000010.vtu");
-    let array = |name: &str| -> Vec<f64> {
-        let start = text.find(&format!("Name=\"{name}\"")).unwrap();
-        let content = text[start..]
-            .split_once('>')
-            .unwrap()
-            .1
-            .split_once('<')
-            .unwrap()
-            .0;
-        let bytes = decode(content);
-        let (head, values) = bytes.split_at(8);
-        assert_eq!(
-            u64::from_le_bytes(head.try_into().unwrap()) as usize,
-            values.len(),
-            "{name}"
-        );
-        values
-            .as_chunks::<8>()
-            .0
-            .iter()
-            .map(|b| f64::from_le_bytes(*b))
-            .collect()
-    };
+    let array = |name: &str| vtu_array(&text, name);
     let step = read_step(&dir.path("out/step_000010.hdf")).unwrap();
     assert_eq!(array("TimeValue"), [step.time]);
     assert_eq!(array("stress"), step.points.stress.unwrap().concat());
@@ -180,6 +158,33 @@ fn vtu_files_hold_the_arrays() {
         collection.contains("timestep=\"0.0001\" part=\"0\" file=\"step_000005.vtu\""),
         "{collection}"
     );
+}
+
+/// Numbers of an array in the text of a VTU file.
+pub fn vtu_array(text: &str, name: &str) -> Vec<f64> {
+    let start = text
+        .find(&format!("Name=\"{name}\""))
+        .unwrap_or_else(|| panic!("no array {name}"));
+    let content = text[start..]
+        .split_once('>')
+        .unwrap()
+        .1
+        .split_once('<')
+        .unwrap()
+        .0;
+    let bytes = decode(content);
+    let (head, values) = bytes.split_at(8);
+    assert_eq!(
+        u64::from_le_bytes(head.try_into().unwrap()) as usize,
+        values.len(),
+        "{name}"
+    );
+    values
+        .as_chunks::<8>()
+        .0
+        .iter()
+        .map(|b| f64::from_le_bytes(*b))
+        .collect()
 }
 
 /// Base64 by its definition (RFC 4648): six bits per letter.

@@ -5,7 +5,7 @@ use crate::util::tables::{Table, number, summary};
 use crate::util::{Dir, assert_close};
 
 /// A column of a table that has words in others.
-fn column(dir: &Dir, file: &str, name: &str) -> Vec<f64> {
+pub fn column(dir: &Dir, file: &str, name: &str) -> Vec<f64> {
     let text = dir.text(file);
     let mut lines = text.lines().map(|line| line.split(','));
     let i = lines

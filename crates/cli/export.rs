@@ -15,7 +15,7 @@ use results::whole::{make_output_folder, write_new};
 #[derive(Debug, Args)]
 pub struct Export {
     /// Folder of the results.
-    dir: PathBuf,
+    pub dir: PathBuf,
     /// Steps: one such as 20, or a range such as 20..40 with both ends; default: all.
     #[arg(long, value_parser = parse_steps)]
     steps: Option<RangeInclusive<u64>>,
@@ -24,7 +24,7 @@ pub struct Export {
     to: ExportForm,
     /// Folder of the files; default: export in the folder of the results.
     #[arg(long)]
-    out: Option<PathBuf>,
+    pub out: Option<PathBuf>,
 }
 
 /// Form of the files.
@@ -32,22 +32,78 @@ pub struct Export {
 enum ExportForm {
     /// One table per step, a row per point: place, body, fields; another of stress at the integration points.
     Csv,
-    /// One VTK XML file per step, and run.pvd with their times.
+    /// One VTK XML file per step, and run.pvd with their times; of a list of bearings blocks in the frame of the shaft.
     Vtu,
 }
 
-/// Writes the steps asked for; existing files are not touched.
+impl ExportForm {
+    /// Ending of the files.
+    fn extension(self) -> &'static str {
+        match self {
+            ExportForm::Csv => "csv",
+            ExportForm::Vtu => "vtu",
+        }
+    }
+}
+
+impl Export {
+    /// Whether all bearings of a list are wanted together.
+    pub fn is_of_list(&self) -> Result<bool, Failure> {
+        Ok(self.to == ExportForm::Vtu && !plot::bearings(&self.dir)?.is_empty())
+    }
+
+    /// Folder of the files.
+    pub fn folder(&self) -> PathBuf {
+        self.out.clone().unwrap_or_else(|| self.dir.join("export"))
+    }
+
+    /// Says how many steps were written.
+    pub fn say_written(&self, n_steps: usize) {
+        print::line(format_args!(
+            "{n_steps} {} as {} in {}",
+            if n_steps == 1 { "step" } else { "steps" },
+            self.to.extension(),
+            self.folder().display()
+        ));
+    }
+
+    /// The committed steps that were asked for.
+    pub fn chosen(&self, committed: &[u64]) -> Result<Vec<u64>, Failure> {
+        let (Some(first), Some(last)) = (committed.first(), committed.last()) else {
+            return Err(checkpoint::CheckpointError::NoSteps {
+                path: self.dir.clone(),
+            }
+            .into());
+        };
+        let wanted = self.steps.clone().unwrap_or(*first..=*last);
+        let steps: Vec<u64> = committed
+            .iter()
+            .copied()
+            .filter(|step| wanted.contains(step))
+            .collect();
+        if steps.is_empty() {
+            return Err(anyhow!(
+                "{} has no step from {} to {}; it has {} steps from {first} to {last}",
+                self.dir.display(),
+                wanted.start(),
+                wanted.end(),
+                committed.len()
+            )
+            .into());
+        }
+        Ok(steps)
+    }
+}
+
+/// Writes the steps of one bearing that were asked for; existing files are not touched.
 pub fn export(request: &Export) -> Result<(), Failure> {
     let dir = &request.dir;
     plot::require_one_bearing(dir)?;
-    let steps = chosen(&all_steps(dir)?, request)?;
+    let steps = request.chosen(&all_steps(dir)?)?;
     let grid = read_mesh(dir)?;
-    let out = request.out.clone().unwrap_or_else(|| dir.join("export"));
+    let out = request.folder();
     make_output_folder(request.out.as_deref(), &out)?;
-    let extension = match request.to {
-        ExportForm::Csv => "csv",
-        ExportForm::Vtu => "vtu",
-    };
+    let extension = request.to.extension();
     let mut names = Vec::new();
     for step in steps {
         let record = read_any_step(dir, step)?;
@@ -67,43 +123,12 @@ pub fn export(request: &Export) -> Result<(), Failure> {
     if request.to == ExportForm::Vtu {
         write_new(&out.join("run.pvd"), |file| vtu::write_collection(file, &names))?;
     }
-    print::line(format_args!(
-        "{} {} as {extension} in {}",
-        names.len(),
-        if names.len() == 1 { "step" } else { "steps" },
-        out.display()
-    ));
+    request.say_written(names.len());
     Ok(())
 }
 
-/// The committed steps that were asked for.
-fn chosen(committed: &[u64], request: &Export) -> Result<Vec<u64>, Failure> {
-    let (Some(first), Some(last)) = (committed.first(), committed.last()) else {
-        return Err(checkpoint::CheckpointError::NoSteps {
-            path: request.dir.clone(),
-        }
-        .into());
-    };
-    let wanted = request.steps.clone().unwrap_or(*first..=*last);
-    let steps: Vec<u64> = committed
-        .iter()
-        .copied()
-        .filter(|step| wanted.contains(step))
-        .collect();
-    if steps.is_empty() {
-        return Err(anyhow!(
-            "{} has no step from {} to {}; it has {} steps from {first} to {last}",
-            request.dir.display(),
-            wanted.start(),
-            wanted.end(),
-            committed.len()
-        )
-        .into());
-    }
-    Ok(steps)
-}
-
-fn require_same_mesh(grid: &Grid, record: &StepRecord) -> Result<(), Failure> {
+/// Fails unless the fields of a step are over the points and cells of a mesh.
+pub fn require_same_mesh(grid: &Grid, record: &StepRecord) -> Result<(), Failure> {
     let rows = |arrays: Vec<(&str, usize, &[f64])>, kind, expected| {
         let found = arrays
             .iter()

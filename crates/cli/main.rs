@@ -33,6 +33,7 @@ mod run;
 mod several;
 mod several_campbell;
 mod several_check;
+mod several_export;
 mod several_files;
 mod several_info;
 mod several_ledger;
@@ -418,7 +419,10 @@ fn execute(arguments: Arguments) -> Result<(), Failure> {
         Command::Init(request) => init::init(&request),
         Command::Pack(request) => pack::pack(&request),
         Command::Cycles(request) => cycles::cycles(&request),
-        Command::Export(request) => export::export(&request),
+        Command::Export(request) => match request.is_of_list()? {
+            true => several_export::export(&request),
+            false => export::export(&request),
+        },
         Command::Study(request) => study::study(&request),
         Command::Prices(request) => study::prices::prices(&request),
         Command::Advise(question) => study::advise(&question),

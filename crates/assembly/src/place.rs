@@ -88,6 +88,14 @@ impl Orientation {
         }
     }
 
+    /// A symmetric tensor in space, xx yy zz xy yz xz, in the bearing's frame, or back.
+    pub fn turned_tensor(self, [xx, yy, zz, xy, yz, xz]: [f64; 6]) -> [f64; 6] {
+        match self {
+            Orientation::PlusZ => [xx, yy, zz, xy, yz, xz],
+            Orientation::MinusZ => [xx, yy, zz, -xy, yz, -xz],
+        }
+    }
+
     /// An azimuth, or a spin, in the bearing's frame, or back.
     pub fn turned_angle(self, angle: f64) -> f64 {
         match self {
@@ -129,5 +137,23 @@ mod tests {
         assert_eq!(o.turned(o.turned(u)), u);
         let work = |a: [f64; 5], b: [f64; 5]| -> f64 { (0..5).map(|i| a[i] * b[i]).sum() };
         assert_eq!(work(o.turned(u), o.turned(f)), work(u, f));
+    }
+
+    /// Wrong: stress of a turned bearing would act in other directions than its displacements show.
+    #[test]
+    fn a_turned_tensor_has_the_turned_traction() {
+        let stress = [3.0, -2.0, 0.5, 0.3, 0.8, -0.4];
+        let traction = |[xx, yy, zz, xy, yz, xz]: [f64; 6], [x, y, z]: [f64; 3]| {
+            [
+                xx * x + xy * y + xz * z,
+                xy * x + yy * y + yz * z,
+                xz * x + yz * y + zz * z,
+            ]
+        };
+        let normal = [0.6, -0.48, 0.64];
+        for o in [Orientation::PlusZ, Orientation::MinusZ] {
+            let turned = traction(o.turned_tensor(stress), o.turned_vector(normal));
+            assert_eq!(turned, o.turned_vector(traction(stress, normal)));
+        }
     }
 }

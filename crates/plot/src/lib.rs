@@ -9,6 +9,7 @@ mod cage;
 mod campbell;
 mod choice;
 mod cut;
+mod deformed;
 mod energy;
 mod groove;
 mod modes;
@@ -18,6 +19,7 @@ mod probes;
 mod profiles;
 pub mod quantity;
 mod raceways;
+mod ring_outline;
 mod run;
 mod seat;
 mod section;
@@ -164,6 +166,10 @@ pub fn figures(dir: &Path, choice: &Choice) -> Result<Figures, Failure> {
         ("grooves", with_names(groove::figures(&results, choice.step))),
         ("seat", with_names(seat::figures(dir))),
         ("sections", with_names(section::figures(&results, choice.step))),
+        (
+            "deformed rings",
+            with_names(deformed::figures(&results, choice.step)),
+        ),
     ];
     let is_chosen = choice.ball != 0 || choice.step.is_some();
     let (mut drawn, mut problems, mut first) = (Vec::new(), Vec::new(), None);

@@ -111,7 +111,8 @@ pub fn nodes(grid: &Grid, record: &StepRecord, groove: &Groove) -> Vec<RacewayNo
     }
 }
 
-fn on_torus(x: [f64; 3], groove: &Groove) -> bool {
+/// Whether a point of the mesh is on a raceway.
+pub fn on_torus(x: [f64; 3], groove: &Groove) -> bool {
     let radial = x[0].hypot(x[1]) - groove.centre_radius;
     let distance = radial.hypot(x[2] - groove.centre_z);
     let towards_raceway = radial * groove.side.sign() > 0.0;

@@ -1,4 +1,4 @@
-//! The step whose stress figures show: steps may lack fields (`output.every`).
+//! The step whose fields figures show: steps may lack fields (`output.every`).
 
 use std::path::Path;
 
@@ -17,6 +17,24 @@ pub fn step_with_stress(dir: &Path, chosen: Option<u64>) -> anyhow::Result<Optio
         }
     }
     Ok(None)
+}
+
+/// The chosen step, or the newest, if it holds displacements; None if there is none.
+pub fn step_with_displacement(dir: &Path, chosen: Option<u64>) -> anyhow::Result<Option<u64>> {
+    let steps = match chosen {
+        Some(step) => vec![step],
+        None => all_steps(dir)?,
+    };
+    for step in steps.into_iter().rev() {
+        if has(dir, step, "displacement")? {
+            return Ok(Some(step));
+        }
+    }
+    Ok(None)
+}
+
+fn has(dir: &Path, step: u64, field: &str) -> anyhow::Result<bool> {
+    Ok(point_field_names(dir, step)?.iter().any(|name| name == field))
 }
 
 /// Says that a chosen step lacks what figures of stress need while others have it.

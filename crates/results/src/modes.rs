@@ -34,7 +34,7 @@ use super::tables;
 use crate::failure::Failure;
 
 /// Largest displacement of a shape in a step file, m.
-const AMPLITUDE: f64 = 1e-3;
+pub(crate) const AMPLITUDE: f64 = 1e-3;
 
 /// Name of the table.
 pub(crate) const TABLE: &str = "modes.csv";

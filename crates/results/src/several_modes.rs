@@ -14,7 +14,7 @@ use crate::tables::{append, create};
 /// What vibrates, as `modes.csv` has it.
 const SEVERAL: &str = "bearings";
 /// The shaft in the modes.
-const SHAFT_TABLE: &str = "mode_shaft.csv";
+pub(crate) const SHAFT_TABLE: &str = "mode_shaft.csv";
 /// Columns of `mode_shaft.csv`: displacements over the largest one of the mode, tilts per m.
 const SHAFT_COLUMNS: [&str; 7] = [
     "mode",

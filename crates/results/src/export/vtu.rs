@@ -12,14 +12,28 @@ use checkpoint::{Grid, StepRecord};
 /// Names of the components of a symmetric tensor in VTK's order.
 const TENSOR: [&str; 6] = ["XX", "YY", "ZZ", "XY", "YZ", "XZ"];
 
+/// A field: name, components, and row-major values.
+pub type FieldArray<'a> = (&'static str, usize, &'a [f64]);
+
 /// Writes the grid with the fields of a step.
 pub fn write(file: &mut dyn Write, grid: &Grid, record: &StepRecord) -> io::Result<()> {
+    let (points, cells) = (record.points.arrays(), record.cells.arrays());
+    write_fields(file, record.time, grid, [&points, &cells])
+}
+
+/// Writes a grid at a time, s, with fields over its points and over its cells.
+pub fn write_fields(
+    file: &mut dyn Write,
+    time: f64,
+    grid: &Grid,
+    [of_points, of_cells]: [&[FieldArray<'_>]; 2],
+) -> io::Result<()> {
     writeln!(
         file,
         "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" \
          header_type=\"UInt64\">\n<UnstructuredGrid>"
     )?;
-    let time = record.time.to_le_bytes();
+    let time = time.to_le_bytes();
     writeln!(file, "<FieldData>")?;
     array(file, "Float64", "TimeValue", " NumberOfTuples=\"1\"", &time)?;
     writeln!(
@@ -28,14 +42,14 @@ pub fn write(file: &mut dyn Write, grid: &Grid, record: &StepRecord) -> io::Resu
         grid.points.len(),
         grid.types.len()
     )?;
-    for (name, n_components, values) in record.points.arrays() {
-        array(file, "Float64", name, &components(n_components), &reals(values))?;
+    for (name, n_components, values) in of_points {
+        array(file, "Float64", name, &components(*n_components), &reals(values))?;
     }
     writeln!(file, "</PointData>\n<CellData>")?;
     array(file, "UInt8", "body", "", &grid.body)?;
     array(file, "Float64", "radius", "", &reals(&grid.radius))?;
-    for (name, n_components, values) in record.cells.arrays() {
-        array(file, "Float64", name, &components(n_components), &reals(values))?;
+    for (name, n_components, values) in of_cells {
+        array(file, "Float64", name, &components(*n_components), &reals(values))?;
     }
     writeln!(file, "</CellData>\n<Points>")?;
     array(

@@ -1,0 +1,184 @@
+//! `raceway export --to vtu` of the folder of a list of bearings: each step as blocks in the frame of the shaft.
+//!
+//! `step_NNNNNN.vtm` names the blocks, whose files are in `step_NNNNNN/`; `run.pvd` has the times.
+
+use std::path::{Path, PathBuf};
+
+use anyhow::anyhow;
+use checkpoint::{CheckpointError, StepRecord, all_steps, read_any_step, read_mesh};
+use results::export::list::{BearingBodies, Owner, ShownGrid, ShownList};
+use results::export::multiblock::{self, DataBlock};
+use results::export::vtu;
+use results::failure::Failure;
+use results::whole::{make_folder, make_output_folder, write_new};
+
+use crate::export::{Export, require_same_mesh};
+
+/// File of the times of all steps.
+const TIMES: &str = "run.pvd";
+
+/// Writes the steps asked for; existing files are not touched.
+pub fn export(request: &Export) -> Result<(), Failure> {
+    let list = ShownList::read(&request.dir)?;
+    let folders: Vec<(String, PathBuf)> = list
+        .names()
+        .map(|name| (name.to_string(), request.dir.join(name)))
+        .collect();
+    let steps = common_steps(&folders, request)?;
+    let (mut grids, mut bearings) = (Vec::new(), Vec::new());
+    for (number, (_, folder)) in folders.iter().enumerate() {
+        let grid = read_mesh(folder)?;
+        // All bearings have steps, as was looked at.
+        let first = read_any_step(folder, all_steps(folder)?[0])?;
+        bearings.push(list.parts_of(number, &grid, &first)?);
+        grids.push(grid);
+    }
+    let out = request.folder();
+    make_output_folder(request.out.as_deref(), &out)?;
+    require_free(&out, &steps)?;
+    let mut names = Vec::new();
+    for step in steps {
+        let mut records = Vec::new();
+        for ((_, folder), grid) in folders.iter().zip(&grids) {
+            let record = read_any_step(folder, step)?;
+            require_same_mesh(grid, &record)?;
+            records.push(record);
+        }
+        let time = common_time(&folders, &records)?;
+        write_step((&list, &bearings), &records, &out)?;
+        names.push((format!("step_{step:06}.vtm"), time));
+    }
+    write_new(&out.join(TIMES), |file| vtu::write_collection(file, &names))?;
+    request.say_written(names.len());
+    Ok(())
+}
+
+/// The steps asked for, which all bearings must have.
+fn common_steps(folders: &[(String, PathBuf)], request: &Export) -> Result<Vec<u64>, Failure> {
+    let mut of_bearings = Vec::new();
+    for (name, folder) in folders {
+        if !folder.is_dir() {
+            return Err(anyhow!(
+                "the folder {} of the bearing {name:?} is not there; expected the results of all bearings of {}",
+                folder.display(),
+                request.dir.display()
+            )
+            .into());
+        }
+        let steps = all_steps(folder)?;
+        if steps.is_empty() {
+            return Err(CheckpointError::NoSteps { path: folder.clone() }.into());
+        }
+        of_bearings.push(steps);
+    }
+    let mut all = of_bearings.concat();
+    all.sort_unstable();
+    all.dedup();
+    let chosen = request.chosen(&all)?;
+    let in_all = |step: &u64| of_bearings.iter().all(|steps| steps.contains(step));
+    let Some(step) = chosen.iter().find(|step| !in_all(step)) else {
+        return Ok(chosen);
+    };
+    let bearing_with = |has: bool| {
+        let found = of_bearings.iter().position(|steps| steps.contains(step) == has);
+        found.map_or("", |i| folders[i].0.as_str())
+    };
+    let common: Vec<u64> = all.iter().copied().filter(in_all).collect();
+    let expected = match common[..] {
+        [] => "there is no step that all bearings have".to_string(),
+        [first, ..] => format!(
+            "expected steps of all bearings, which have {} from {first} to {}; choose some with --steps",
+            common.len(),
+            common[common.len() - 1]
+        ),
+    };
+    Err(anyhow!(
+        "step {step} of {} is there for the bearing {:?} and not for {:?}; {expected}",
+        request.dir.display(),
+        bearing_with(true),
+        bearing_with(false)
+    )
+    .into())
+}
+
+/// Fails if anything would be written over, before the first file is.
+fn require_free(out: &Path, steps: &[u64]) -> Result<(), Failure> {
+    let of_steps = steps
+        .iter()
+        .flat_map(|step| [format!("step_{step:06}.vtm"), format!("step_{step:06}")]);
+    let taken = of_steps.chain([TIMES.to_string()]).map(|name| out.join(name));
+    match taken.into_iter().find(|path| path.symlink_metadata().is_ok()) {
+        None => Ok(()),
+        Some(path) => Err(anyhow!(
+            "{} is there already and is not written over; remove it or choose another --out",
+            path.display()
+        )
+        .into()),
+    }
+}
+
+/// The time of a step, which is the same for all bearings, s.
+fn common_time(folders: &[(String, PathBuf)], records: &[StepRecord]) -> Result<f64, Failure> {
+    let first = &records[0];
+    let other = records
+        .iter()
+        .zip(folders)
+        .find(|(record, _)| record.time.to_bits() != first.time.to_bits());
+    match other {
+        None => Ok(first.time),
+        Some((record, (_, folder))) => Err(anyhow!(
+            "step {} of {} is at {:?} s, that of {} at {:?} s: they are of two runs",
+            first.step,
+            folders[0].1.display(),
+            first.time,
+            folder.display(),
+            record.time
+        )
+        .into()),
+    }
+}
+
+/// Writes the blocks of a step, and then what names them.
+fn write_step(
+    (list, bearings): (&ShownList, &[BearingBodies]),
+    records: &[StepRecord],
+    out: &Path,
+) -> Result<(), Failure> {
+    let (step, time) = (records[0].step, records[0].time);
+    let stem = format!("step_{step:06}");
+    make_folder(&out.join(&stem))?;
+    let write = |name: &str, grid: &ShownGrid| -> anyhow::Result<String> {
+        let path = format!("{stem}/{name}.vtu");
+        let [points, cells] = grid.fields();
+        write_new(&out.join(&path), |file| {
+            vtu::write_fields(file, time, &grid.grid, [&points, &cells])
+        })?;
+        Ok(path)
+    };
+    let (mut of_bearings, mut bodies) = (Vec::new(), Vec::new());
+    for ((bearing, record), name) in bearings.iter().zip(records).zip(list.names()) {
+        let mut own = Vec::new();
+        for part in list.shown(bearing, record)? {
+            match part.owner {
+                Owner::Bearing => {
+                    let path = write(&format!("{name}_{}", part.name.replace(' ', "_")), &part.shown)?;
+                    own.push(DataBlock::Leaf(part.name, path));
+                }
+                Owner::Body => {
+                    let path = write(&format!("body_{}", bodies.len()), &part.shown)?;
+                    bodies.push(DataBlock::Leaf(part.name, path));
+                }
+            }
+        }
+        of_bearings.push(DataBlock::Group(name.to_string(), own));
+    }
+    let shaft = DataBlock::Leaf("shaft".to_string(), write("shaft", &list.shaft(step)?)?);
+    let mut blocks = vec![DataBlock::Group("bearings".to_string(), of_bearings)];
+    if !bodies.is_empty() {
+        blocks.push(DataBlock::Group("bodies".to_string(), bodies));
+    }
+    blocks.push(shaft);
+    Ok(write_new(&out.join(format!("{stem}.vtm")), |file| {
+        multiblock::write(file, &blocks)
+    })?)
+}
