@@ -7,6 +7,7 @@ mod campbell;
 mod campbell_files;
 mod check;
 mod cycles;
+mod damping;
 mod export;
 mod help;
 mod info;
