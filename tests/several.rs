@@ -8,14 +8,14 @@ use crate::util::tables::{Table, number, summary};
 use crate::util::{Dir, Outcome, SCENE, assert_close};
 
 /// The tables of the scene's bearing, with rigid rings, in `types/kind.toml`.
-fn with_type() -> Dir {
+pub fn with_type() -> Dir {
     let dir = Dir::with_scene(SCENE);
     std::fs::create_dir_all(dir.path("types")).unwrap();
     dir.write("types/kind.toml", kind());
     dir
 }
 
-fn parts() -> [String; 2] {
+pub fn parts() -> [String; 2] {
     let [mut kind, mut rest] = [String::new(), String::new()];
     let mut is_kind = false;
     for line in SCENE.lines() {

@@ -49,6 +49,7 @@ mod rigid_ring;
 mod schedules;
 mod sectors;
 mod several;
+mod several_damping;
 mod several_export;
 mod several_modes;
 mod several_quasi_static;

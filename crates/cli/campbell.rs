@@ -23,10 +23,11 @@ use scene::{AnyScene, Scene, build_model, doubts, model_with_rings};
 use crate::campbell_files::{
     self, Diagram, GROWS, MODES_OF_BEAM, growing, require_one_point, without_stress,
 };
+use crate::damping::{damping_note, laws};
 use crate::progress::Progress;
 use crate::several::solving;
 use crate::several_campbell;
-use crate::stiffness::{instant, laws, pose_at, require_load};
+use crate::stiffness::{instant, pose_at, require_load};
 
 /// Most speeds of a diagram.
 const MOST_SPEEDS: usize = 1000;
@@ -113,6 +114,7 @@ pub fn campbell(command: &CampbellCommand) -> Result<(), Failure> {
         modes,
         warnings,
         note: None,
+        damping_note: damping_note(laws(&scene.effects), [&model]),
     };
     campbell_files::write(&diagram, &command.out, &model.geometry, scene.effects.slip())
 }
@@ -181,7 +183,7 @@ fn diagram(
         let solution = solver.solve_at(&model, &pose_at(&scene, time), before.as_ref());
         let solution = solution.map_err(Failure::solving).map_err(at)?;
         require_load(&solution).map_err(at)?;
-        let linear = Linearisation::new(&model, &solver, &solution, laws(&scene));
+        let linear = Linearisation::new(&model, &solver, &solution, laws(&scene.effects));
         let linear = linear.map_err(Failure::solving).map_err(at)?;
         let modes = match &bodies {
             None => TurningShaft::new(&model, &linear, inertia, speeds[0]).map_err(Failure::solving),

@@ -53,6 +53,8 @@ pub struct Diagram {
     pub warnings: Vec<String>,
     /// A remark on the lines of cage and balls.
     pub note: Option<String>,
+    /// What the damping ratios have in them.
+    pub damping_note: String,
 }
 
 /// Refuses a sweep.
@@ -77,6 +79,7 @@ pub fn write(
     make_asked_folder(out)?;
     write_campbell(out, &diagram.modes, geometry, slip)?;
     print_campbell(&diagram.modes);
+    print::line(format_args!("damping: {}", diagram.damping_note));
     print_warnings(&diagram.warnings);
     if let Some(note) = &diagram.note {
         print::line(format_args!("{note}"));

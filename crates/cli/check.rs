@@ -16,6 +16,7 @@ use results::probes::PlacedProbes;
 use results::survey::Survey;
 use scene::{Analysis, AnyScene, Scene, build_model, doubts};
 
+use crate::bodies::print_bodies;
 use crate::modes;
 use crate::rank_table;
 use crate::ring_sizes::print_rings;
@@ -61,6 +62,7 @@ pub fn check(path: &Path, overrides: &[String]) -> Result<(), Failure> {
         ));
     }
     let rings = print_rings(&model)?;
+    print_bodies(std::iter::once(&model));
     print_memory(&scene, &model, rings.memory, rings.motion);
     rank_table::print(&rings.on_ranks, &scene.analysis);
     let forecast = Forecast::new(&scene, &model, 0);

@@ -3,10 +3,12 @@
 //! Exit codes: 0 finished, 2 wrong input, 3 no solution found, 75 stopped early with a step to resume
 //! from.
 
+mod bodies;
 mod campbell;
 mod campbell_files;
 mod check;
 mod cycles;
+mod damping;
 mod export;
 mod help;
 mod info;

@@ -17,6 +17,7 @@ use dynamics::effects::rules::{Case, MATTERS, percent};
 use results::failure::Failure;
 use scene::{Analysis, Scene, ShaftMotion, material, speeds};
 
+use crate::bodies::orders_of_seats;
 use crate::periodic_gain;
 
 /// What the rules of thumb say about the effects of a scene: a sentence each, with estimate and formula.
@@ -45,28 +46,6 @@ pub fn advice(scene: &Scene, model: &Model) -> Result<Vec<String>, Failure> {
     lines.extend(periodic_gain::advice(scene, model));
     lines.extend(orders_of_seats(scene, model));
     Ok(lines)
-}
-
-/// A seat follows each ball where it has orders up to the number of balls and a little more.
-fn orders_of_seats(scene: &Scene, model: &Model) -> Vec<String> {
-    let mut lines = Vec::new();
-    for body in scene.bodies.iter().flatten() {
-        let last = body.basis.order_and_degree(body.basis.n_functions() - 1);
-        let (Some([harmonics, _]), balls) = (last, model.geometry.n_balls) else {
-            continue;
-        };
-        if harmonics > balls {
-            continue;
-        }
-        lines.push(format!(
-            "body {:?}: its seat has {harmonics} orders for {balls} balls, so the ring gives way under each ball as if \
-             nothing held it; ball forces hardly notice, displacements of the shaft come out about 1 % too large; \
-             body.seat.harmonics = {} follows the balls",
-            body.name,
-            balls + 2
-        ));
-    }
-    lines
 }
 
 /// Play in which balls cannot be told from balls that just touch, m: a thousandth of what micrometers show.

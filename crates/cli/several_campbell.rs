@@ -4,10 +4,9 @@ use std::f64::consts::PI;
 use std::path::Path;
 
 use anyhow::anyhow;
-use assembly::AssemblySolver;
 use assembly::stiffness::LinearAssembly;
 use assembly::whirl::TurningAssembly;
-use dynamics::DampingLaws;
+use assembly::{Assembly, AssemblySolver};
 use dynamics::kinematics::Speed;
 use dynamics::whirl::WhirlMode;
 use results::campbell::{CAMPBELL_LINES, CAMPBELL_TABLE, ModesAtSpeed};
@@ -19,6 +18,7 @@ use scene::{SeveralScene, assembly_with_rings, build_assembly};
 use crate::campbell_files::{
     self, Diagram, GROWS, MODES_OF_BEAM, growing, require_one_point, without_stress,
 };
+use crate::damping::{damping_note, laws};
 use crate::progress::Progress;
 use crate::several::{rings, solving, warnings_at};
 use crate::several_read::all_doubts;
@@ -40,12 +40,14 @@ pub fn campbell(
     let is_like = |b: &scene::BearingOnShaft| scene::geometry(&b.scene) == first;
     let name = scene.bearings[0].name.clone();
     let others = !scene.bearings.iter().all(is_like);
-    let (modes, warnings) = diagram(scene, speeds, number)?;
+    let laws = laws(&scene.effects);
+    let (modes, assembly, warnings) = diagram(scene, speeds, number)?;
     let note = others.then(|| format!("the lines of cage and ball pass are those of bearing {name:?}"));
     let diagram = Diagram {
         modes,
         warnings,
         note,
+        damping_note: damping_note(laws, assembly.bearings.iter().map(|bearing| &bearing.model)),
     };
     campbell_files::write(&diagram, out, &first, slip)
 }
@@ -55,7 +57,7 @@ fn diagram(
     mut scene: SeveralScene,
     speeds: &[f64],
     number: Option<usize>,
-) -> Result<(Vec<ModesAtSpeed>, Vec<String>), Failure> {
+) -> Result<(Vec<ModesAtSpeed>, Assembly, Vec<String>), Failure> {
     let mut progress = Progress::new(speeds.len() as u64);
     progress.stage("reading meshes");
     let (mut assembly, _) = build_assembly(&scene)?;
@@ -87,7 +89,7 @@ fn diagram(
         assembly = assembly_with_rings(&scene, rings(assembly))?;
         let solution = solver.solve(&mut assembly, before.as_ref());
         let solution = solution.map_err(solving).map_err(at)?;
-        let modes = LinearAssembly::new(&assembly, &solver, &solution, DampingLaws::default())
+        let modes = LinearAssembly::new(&assembly, &solver, &solution, laws(&scene.effects))
             .and_then(|linear| turning.equations((&assembly, &solver), (&solution, &linear), speed));
         let modes = modes.map_err(solving).map_err(at)?.modes();
         let mut modes = modes.map_err(Failure::solving).map_err(at)?;
@@ -107,7 +109,7 @@ fn diagram(
         progress.advance();
     }
     progress.finish();
-    Ok((found, warnings))
+    Ok((found, assembly, warnings))
 }
 
 /// Has the shaft turn at a speed, rad/s, in all bearings.

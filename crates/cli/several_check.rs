@@ -1,5 +1,6 @@
 //! `raceway check` of a scene with a list of bearings: sizes of each type, the shaft, and what is to be solved.
 
+use assembly::Assembly;
 use comm::print;
 use dynamics::RingMemory;
 use dynamics::motion::check_supported;
@@ -8,6 +9,7 @@ use results::failure::Failure;
 use results::memory::{forecast, forecast_modes_of_list};
 use scene::{Analysis, SeveralScene, ShaftKind, build_assembly, have_same_rings};
 
+use crate::bodies::{orders_of_seats, print_bodies};
 use crate::ring_sizes::print_rings;
 use crate::several_read::{all_doubts, surveys};
 use crate::shared::print_effects;
@@ -58,20 +60,50 @@ pub fn check(scene: &SeveralScene) -> Result<(), Failure> {
         let bearings: Vec<_> = models.zip(memory).collect();
         peak = peak.max(forecast_modes_of_list(wanted, &bearings));
     }
+    print_bodies(assembly.bearings.iter().map(|bearing| &bearing.model));
     print_shaft(scene, &assembly.shaft);
     print::line(format_args!(
         "memory   peak about {:.0} MB with {} threads",
         peak as f64 / 1e6,
         rayon::current_num_threads()
     ));
-    let advice = all_doubts(scene, &assembly);
+    print_advice(scene, &assembly);
+    answer::add("peak_memory_bytes", peak);
+    answer::add("shaft_dofs", assembly.shaft.n());
+    Ok(())
+}
+
+fn print_advice(scene: &SeveralScene, assembly: &Assembly) {
+    for line in assumed(scene) {
+        print::line(format_args!("assumed  {line}"));
+    }
+    let advice = [all_doubts(scene, assembly), orders_of_all(scene, assembly)].concat();
     for line in &advice {
         print::line(format_args!("advice   {line}"));
     }
     answer::add("advice", &advice);
-    answer::add("peak_memory_bytes", peak);
-    answer::add("shaft_dofs", assembly.shaft.n());
-    Ok(())
+}
+
+/// Numbers that names stand for, once each.
+fn assumed(scene: &SeveralScene) -> Vec<String> {
+    let of_bearings = scene.bearings.iter().flat_map(|bearing| &bearing.scene.assumed);
+    once(of_bearings.chain(&scene.shaft.assumed).cloned())
+}
+
+/// What to do about seats that do not follow their balls, once for each body.
+fn orders_of_all(scene: &SeveralScene, assembly: &Assembly) -> Vec<String> {
+    let bearings = scene.bearings.iter().zip(&assembly.bearings);
+    once(bearings.flat_map(|(bearing, mounted)| orders_of_seats(&bearing.scene, &mounted.model)))
+}
+
+fn once(lines: impl Iterator<Item = String>) -> Vec<String> {
+    let mut all: Vec<String> = Vec::new();
+    for line in lines {
+        if !all.contains(&line) {
+            all.push(line);
+        }
+    }
+    all
 }
 
 fn print_analysis(scene: &SeveralScene) {

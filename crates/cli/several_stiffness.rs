@@ -5,24 +5,23 @@
 use std::path::Path;
 
 use assembly::stiffness::LinearAssembly;
-use assembly::{Assembly, AssemblySolution, AssemblySolver, HousedTogether};
+use assembly::{Assembly, AssemblyError, AssemblySolution, AssemblySolver, HousedTogether};
 use comm::print;
 use contact::Side;
-use dynamics::DampingLaws;
 use results::failure::Failure;
-use results::several_stiffness::{BearingStiffness, CouplingStiffness, SeveralStiffness, ShaftStiffnessAt};
+use results::several_stiffness::{
+    BearingStiffness, CouplingStiffness, SeveralStiffness, ShaftOperatingPoint, ShaftStiffnessAt,
+};
 use results::stiffness::{NOT_OVER_SPEED, OperatingPoint, StiffnessAt, StiffnessResults, require_free};
 use results::survey::say_doubts;
 use results::whole::make_asked_folder;
 use scene::{SeveralScene, assembly_with_rings, build_assembly};
 
+use crate::damping::{damping_note, laws};
 use crate::linear_figures::draw;
 use crate::progress::Progress;
 use crate::several::{at_point, column, points, rings, solving, stage_text, words_of};
 use crate::several_read::all_doubts;
-
-/// Why there is no damping.
-const NO_DAMPING: &str = "none: a list of bearings is linearised at rest, where no law gives any";
 
 /// Linearises and writes.
 pub fn stiffness(scene: &SeveralScene, out: &Path) -> Result<(), Failure> {
@@ -54,7 +53,7 @@ fn empty(scene: &SeveralScene, warnings: Vec<String>) -> SeveralStiffness {
             source: source.clone(),
             column: column.clone(),
             points: Vec::new(),
-            damping_note: NO_DAMPING.to_string(),
+            damping_note: String::new(),
             warnings: Vec::new(),
         },
     };
@@ -65,6 +64,7 @@ fn empty(scene: &SeveralScene, warnings: Vec<String>) -> SeveralStiffness {
         position: first_load.unwrap_or(scene.shaft.load_point),
         shaft: Vec::new(),
         couplings: Vec::new(),
+        damping_note: String::new(),
         warnings,
         source,
         column,
@@ -92,22 +92,12 @@ fn linearise(scene: &SeveralScene) -> Result<SeveralStiffness, Failure> {
             .solve(&mut assembly, before.as_ref())
             .map_err(solving)
             .map_err(at)?;
-        let linear = LinearAssembly::new(&assembly, &solver, &solution, DampingLaws::default())
+        let linear = LinearAssembly::new(&assembly, &solver, &solution, laws(&point.effects))
             .map_err(solving)
             .map_err(at)?;
-        let of_shaft = linear
-            .of_shaft(&assembly, results.position)
-            .map_err(solving)
-            .map_err(at)?;
+        let of_shaft = note_shaft(&linear, (&assembly, &solution), (*value, point), &results);
+        results.shaft.push(of_shaft.map_err(solving).map_err(at)?);
         let speed = point.speed.as_ref().map_or(0.0, |speed| speed.inner.at(0.0));
-        results.shaft.push(ShaftStiffnessAt {
-            value: *value,
-            speed,
-            stiffness: of_shaft,
-            displacement: assembly
-                .shaft
-                .displacement_at(results.position, &solution.shaft.displacements),
-        });
         note_bearings((*value, point, speed), &linear, &solution, &mut results);
         note_couplings(&linear, &mut results);
         results
@@ -118,7 +108,45 @@ fn linearise(scene: &SeveralScene) -> Result<SeveralStiffness, Failure> {
     }
     progress.finish();
     results.warnings.extend(felt_through(&assembly));
+    note_damping(scene, &assembly, &mut results);
     Ok(results)
+}
+
+/// The shaft at a point: swept value, load case.
+fn note_shaft(
+    linear: &LinearAssembly,
+    (assembly, solution): (&Assembly, &AssemblySolution),
+    (value, point): (Option<f64>, &SeveralScene),
+    results: &SeveralStiffness,
+) -> Result<ShaftStiffnessAt, AssemblyError> {
+    let speeds = point.speed.clone().unwrap_or_default();
+    let speeds = Side::BOTH.map(|side| speeds.of(side).at(0.0));
+    let position = results.position;
+    let displacement = assembly
+        .shaft
+        .displacement_at(position, &solution.shaft.displacements);
+    Ok(ShaftStiffnessAt {
+        value,
+        speed: speeds[0],
+        stiffness: linear.of_shaft(assembly, position)?,
+        damping: linear.damping_of_shaft(assembly, position)?,
+        displacement,
+        operating_point: ShaftOperatingPoint {
+            time_s: 0.0,
+            speed_rad_per_s: speeds,
+            shaft_displacement: displacement,
+        },
+    })
+}
+
+/// Says what the damping of each bearing is, and that of the shaft.
+fn note_damping(scene: &SeveralScene, assembly: &Assembly, results: &mut SeveralStiffness) {
+    let laws = laws(&scene.effects);
+    let models = assembly.bearings.iter().map(|bearing| &bearing.model);
+    for (bearing, model) in results.bearings.iter_mut().zip(models.clone()) {
+        bearing.results.damping_note = damping_note(laws, [model]);
+    }
+    results.damping_note = damping_note(laws, models);
 }
 
 /// Notes the matrix of each bearing at a point: swept value, load case, speed of the shaft, rad/s.
@@ -152,9 +180,11 @@ fn note_couplings(linear: &LinearAssembly, results: &mut SeveralStiffness) {
                 loaded: name(coupling.loaded),
                 moved: name(coupling.moved),
                 stiffness: Vec::new(),
+                damping: Vec::new(),
             });
         }
         results.couplings[number].stiffness.push(coupling.stiffness);
+        results.couplings[number].damping.push(coupling.damping);
     }
 }
 

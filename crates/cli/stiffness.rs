@@ -23,6 +23,7 @@ use results::survey::say_doubts;
 use results::whole::make_asked_folder;
 use scene::{Analysis, AnyScene, Scene, build_model, doubts, model_with_rings, rolling};
 
+use crate::damping::{damping_note, laws};
 use crate::linear_figures::draw;
 use crate::progress::Progress;
 use crate::run::{SweptScene, points, stage_text};
@@ -126,14 +127,6 @@ pub fn pose_at(scene: &Scene, time: f64) -> Pose {
     rolling(scene).map_or_else(at_rest, |rolling| rolling.pose(time))
 }
 
-/// Damping laws of a scene.
-pub fn laws(scene: &Scene) -> DampingLaws {
-    DampingLaws {
-        contacts: scene.effects.contact_damping(),
-        rings: scene.effects.ring_damping(),
-    }
-}
-
 fn linearise(scene: &Scene, time: f64, ripple: Option<usize>) -> Result<StiffnessResults, Failure> {
     let points = points(scene)?;
     let mut progress = Progress::new(points.len() as u64);
@@ -173,30 +166,8 @@ fn linearise(scene: &Scene, time: f64, ripple: Option<usize>) -> Result<Stiffnes
         progress.advance();
     }
     progress.finish();
-    results.damping_note = damping_note(scene, &model);
+    results.damping_note = damping_note(laws(&scene.effects), [&model]);
     Ok(results)
-}
-
-/// What the damping has in it, or why there is none.
-fn damping_note(scene: &Scene, model: &Model) -> String {
-    let laws = laws(scene);
-    let has_rings = Side::BOTH.iter().any(|side| model.ring(*side).is_some());
-    let of_contacts = laws.contacts.map(|_| "contacts along their normal");
-    let of_rings = laws.rings.filter(|rings| has_rings && rings.stiffness > 0.0);
-    let of_rings = of_rings.map(|_| "rings in proportion to their stiffness");
-    let parts: Vec<&str> = of_contacts.into_iter().chain(of_rings).collect();
-    let left_out = match laws.rings {
-        Some(rings) if has_rings && rings.mass > 0.0 => {
-            "; the part of the rings in proportion to mass is left out"
-        }
-        _ => "",
-    };
-    match parts.is_empty() {
-        true => format!(
-            "none: the scene has neither contact_damping nor rayleigh_damping, which take [dynamic]{left_out}"
-        ),
-        false => format!("{}, of slow motions{left_out}", parts.join(" and ")),
-    }
 }
 
 /// A point of a scene and what is asked of it.
@@ -217,7 +188,8 @@ impl PointOfScene<'_> {
         let pose = pose_at(scene, self.time);
         let solution = solver.solve_at(model, &pose, before).map_err(Failure::solving)?;
         require_load(&solution)?;
-        let found = Linearisation::new(model, solver, &solution, laws(scene)).map_err(Failure::solving)?;
+        let found =
+            Linearisation::new(model, solver, &solution, laws(&scene.effects)).map_err(Failure::solving)?;
         let (stiffness, damping) = found.of_shaft().map_err(Failure::solving)?;
         let mut warnings = solution.warnings.clone();
         warnings.extend(not_positive(&stiffness, model)?);

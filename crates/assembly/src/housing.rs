@@ -277,6 +277,12 @@ impl SharedBody {
         &self.bearings
     }
 
+    /// The number of the bearing and the joint of each seat.
+    pub fn seats(&self) -> impl Iterator<Item = (usize, &SeatTie)> {
+        let seats = self.bearings.iter().zip(&self.seats);
+        seats.map(|(bearing, (tie, _))| (*bearing, tie.as_ref()))
+    }
+
     /// Adds a row over the motion of a seat, times what forces on the other seats move it, to a row over forces.
     fn add_motion(&self, tie: &SeatTie, row: &[f64], to: &mut [f64]) {
         let Some(body) = &tie.body else { return };

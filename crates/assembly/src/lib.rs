@@ -17,6 +17,7 @@ pub mod assembly;
 pub mod beam;
 mod error;
 mod housing;
+mod housing_damping;
 mod mixing;
 pub mod modes;
 pub mod motion;

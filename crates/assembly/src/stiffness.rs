@@ -7,17 +7,19 @@
 //! The matrix of the shaft at a point is over the motion of that point: the load to be put there for a unit of its
 //! displacement, with everything else free and the held dofs of a rigid shaft held no more. A rigid shaft carries the
 //! matrices of the bearings to the point. A beam gives way between, so that its matrix is the inverse of the compliance
-//! of the point.
+//! of the point. Damping of the point is that of slow motions ([`Condensation`]); the beam has none of its own.
 
 use contact::Side;
 use dense::DenseLu;
-use dynamics::moved_seat::{MovedSeats, SeatStiffness};
+use dynamics::condensation::Condensation;
+use dynamics::moved_seat::{MovedSeats, SeatMatrices, SeatStiffness};
 use dynamics::stiffness::{DampingLaws, N_SHAFT, ShaftMatrix};
 use dynamics::{Linearisation, StaticSolver};
 
 use crate::assembly::{Assembly, AssemblySolution, AssemblySolver};
 use crate::error::AssemblyError;
 use crate::housing::{SharedBody, coupled};
+use crate::housing_damping::damping_in_bodies;
 use crate::shaft::{Station, applied};
 
 /// Bearings of an assembly to first order.
@@ -39,6 +41,8 @@ struct InBodies {
     starts: Vec<usize>,
     /// Stiffness, row-major.
     stiffness: Vec<f64>,
+    /// Damping, if there is any.
+    damping: Option<Vec<f64>>,
 }
 
 /// Load on a bearing by the motion of the shaft at another, through a body that carries both, in the shaft's frame.
@@ -50,6 +54,8 @@ pub struct BodyCoupling {
     pub moved: usize,
     /// Growth of the load.
     pub stiffness: ShaftMatrix,
+    /// The same with the velocity, if there is damping.
+    pub damping: Option<ShaftMatrix>,
 }
 
 impl LinearAssembly {
@@ -93,25 +99,35 @@ impl LinearAssembly {
             return Ok(());
         }
         let mut of_shaft: Vec<Option<SeatStiffness>> = Vec::new();
+        let mut whole: Vec<Option<SeatMatrices>> = Vec::new();
         for (i, bearing) in assembly.bearings.iter().enumerate() {
             let around = bodies.iter().filter(|body| body.bearings().contains(&i));
             let sides: Vec<Side> = around.map(SharedBody::side).collect();
             if sides.is_empty() {
                 of_shaft.push(None);
+                whole.push(None);
                 continue;
             }
             let fail = AssemblyError::of_bearing(&bearing.name);
             let factors = solver.of_bearing(i);
             let seats = MovedSeats::new(&sides, factors, &solution.bearings[i], &self.bearings[i]);
             of_shaft.push(Some(seats.of_shaft().map_err(fail)?));
+            whole.push(self.damping[i].map(|_| seats.matrices()));
         }
-        let stiffness = coupled(bodies, &of_shaft).map_err(|source| AssemblyError::Matrix { source })?;
+        let failed = |source| AssemblyError::Matrix { source };
+        let stiffness = coupled(bodies, &of_shaft).map_err(failed)?;
+        let damping = damping_in_bodies(bodies, &whole).map_err(failed)?;
         let mut starts = vec![0];
         for own in &of_shaft {
             let n = own.as_ref().map_or(0, |own| own.n_kept);
             starts.push(starts[starts.len() - 1] + n);
         }
-        self.take_blocks(assembly, bodies, &InBodies { starts, stiffness });
+        let all = InBodies {
+            starts,
+            stiffness,
+            damping,
+        };
+        self.take_blocks(assembly, bodies, &all);
         Ok(())
     }
 
@@ -121,20 +137,26 @@ impl LinearAssembly {
         for group in joined(bodies) {
             for &loaded in &group {
                 for &moved in &group {
-                    let entry = |i: usize, j: usize| {
-                        all.stiffness[n * (all.starts[loaded] + i) + all.starts[moved] + j]
-                    };
-                    let block = std::array::from_fn(|i| std::array::from_fn(|j| entry(i, j)));
                     let [to, from] = [loaded, moved].map(|b| assembly.bearings[b].place.orientation);
-                    let stiffness = to.turned_block(from, &block);
-                    match loaded == moved {
-                        true => self.stiffness[loaded] = stiffness,
-                        false => self.couplings.push(BodyCoupling {
-                            loaded,
-                            moved,
-                            stiffness,
-                        }),
+                    let block = |matrix: &[f64]| {
+                        let entry =
+                            |i: usize, j: usize| matrix[n * (all.starts[loaded] + i) + all.starts[moved] + j];
+                        let block = std::array::from_fn(|i| std::array::from_fn(|j| entry(i, j)));
+                        to.turned_block(from, &block)
+                    };
+                    let stiffness = block(&all.stiffness);
+                    let damping = all.damping.as_deref().map(block);
+                    if loaded == moved {
+                        self.stiffness[loaded] = stiffness;
+                        self.damping[loaded] = damping;
+                        continue;
                     }
+                    self.couplings.push(BodyCoupling {
+                        loaded,
+                        moved,
+                        stiffness,
+                        damping,
+                    });
                 }
             }
         }
@@ -142,12 +164,24 @@ impl LinearAssembly {
 
     /// Adds what bearings at these stations do to each other to a matrix of the shaft of `n` dofs.
     fn add_couplings(&self, stations: &[Station], n: usize, matrix: &mut [f64]) {
+        let of = |coupling: &BodyCoupling| Some(coupling.stiffness);
+        self.add_between(of, stations, n, matrix);
+    }
+
+    fn add_between(
+        &self,
+        of: impl Fn(&BodyCoupling) -> Option<ShaftMatrix>,
+        stations: &[Station],
+        n: usize,
+        matrix: &mut [f64],
+    ) {
         for coupling in &self.couplings {
+            let Some(between) = of(coupling) else { continue };
             for column in 0..n {
                 let (mut unit, mut load) = (vec![0.0; n], vec![0.0; n]);
                 unit[column] = 1.0;
                 let moved = stations[coupling.moved].displacement(&unit);
-                stations[coupling.loaded].add_load(applied(&coupling.stiffness, &moved), &mut load);
+                stations[coupling.loaded].add_load(applied(&between, &moved), &mut load);
                 let rows = matrix.iter_mut().skip(column).step_by(n);
                 rows.zip(load).for_each(|(sum, load)| *sum += load);
             }
@@ -169,12 +203,7 @@ impl LinearAssembly {
             return Ok(square(&sum));
         }
         let n = shaft.n();
-        let mut whole = shaft.stiffness.clone();
-        for (mount, stiffness) in assembly.mounts().iter().zip(&self.stiffness) {
-            mount.station.add_matrix(stiffness, n, &mut whole);
-        }
-        let stations: Vec<Station> = assembly.mounts().into_iter().map(|mount| mount.station).collect();
-        self.add_couplings(&stations, n, &mut whole);
+        let whole = self.on_beam(assembly);
         let matrix = |source| AssemblyError::Matrix { source };
         let first = shaft.station(position).first;
         let mut columns = vec![0.0; n * N_SHAFT];
@@ -188,6 +217,67 @@ impl LinearAssembly {
         let inverse = DenseLu::factor(N_SHAFT, &compliance).map_err(matrix)?.inverse();
         Ok(square(&inverse))
     }
+
+    /// Stiffness of a beam on its bearings over all its dofs, row-major.
+    fn on_beam(&self, assembly: &Assembly) -> Vec<f64> {
+        let (n, mounts) = (assembly.shaft.n(), assembly.mounts());
+        let mut whole = assembly.shaft.stiffness.clone();
+        for (mount, stiffness) in mounts.iter().zip(&self.stiffness) {
+            mount.station.add_matrix(stiffness, n, &mut whole);
+        }
+        let stations: Vec<Station> = mounts.into_iter().map(|mount| mount.station).collect();
+        self.add_couplings(&stations, n, &mut whole);
+        whole
+    }
+
+    /// Damping of the shaft on its bearings at a position, m, in slow motions; None where no bearing has any.
+    pub fn damping_of_shaft(
+        &self,
+        assembly: &Assembly,
+        position: f64,
+    ) -> Result<Option<ShaftMatrix>, AssemblyError> {
+        if self.damping.iter().all(Option::is_none) {
+            return Ok(None);
+        }
+        let shaft = &assembly.shaft;
+        let (n, origin) = match shaft.is_beam() {
+            true => (shaft.n(), None),
+            false => (N_SHAFT, Some(position)),
+        };
+        let bearings = assembly.bearings.iter().zip(assembly.mounts());
+        let stations: Vec<Station> = bearings
+            .map(|(bearing, mount)| match origin {
+                Some(origin) => Station::on_rigid_shaft(bearing.place.position - origin),
+                None => mount.station,
+            })
+            .collect();
+        let mut damping = vec![0.0; n * n];
+        for (station, own) in stations.iter().zip(&self.damping) {
+            if let Some(own) = own {
+                station.add_matrix(own, n, &mut damping);
+            }
+        }
+        self.add_between(|coupling| coupling.damping, &stations, n, &mut damping);
+        if origin.is_some() {
+            return Ok(Some(square(&damping)));
+        }
+        let first = shaft.station(position).first;
+        let whole = with_node_first(n, first, &self.on_beam(assembly));
+        let condensation = Condensation::new(n, N_SHAFT, &whole);
+        let condensation = condensation.map_err(|source| AssemblyError::Matrix { source })?;
+        Ok(Some(square(
+            &condensation.apply(&with_node_first(n, first, &damping)),
+        )))
+    }
+}
+
+/// A matrix of `n` rows with the five rows and columns from `first` on before all others.
+fn with_node_first(n: usize, first: usize, matrix: &[f64]) -> Vec<f64> {
+    let of_node = first..first + N_SHAFT;
+    let others = (0..n).filter(|i| !of_node.contains(i));
+    let order: Vec<usize> = of_node.clone().chain(others).collect();
+    let row = |i: &usize| order.iter().map(|j| matrix[n * i + j]).collect::<Vec<f64>>();
+    order.iter().flat_map(row).collect()
 }
 
 /// The bearings that feel each other, directly or by others.

@@ -69,10 +69,7 @@ pub enum SurroundingError {
         key: &'static str,
     },
     /// Nothing holds the body.
-    #[error(
-        "body \"{body}\" is not held: it can move at node {node} in {axis} without any force; name the groups that \
-         stand on the ground in `fixed`, and check that the body is one connected part"
-    )]
+    #[error("body \"{body}\" is not held: it can move at node {node} in {axis} without any force; {advice}")]
     NotHeld {
         /// Name of the body.
         body: String,
@@ -80,6 +77,8 @@ pub enum SurroundingError {
         node: u64,
         /// Direction.
         axis: &'static str,
+        /// What to try.
+        advice: &'static str,
     },
     /// The fixed nodes lie on a line or a point.
     #[error(
@@ -94,21 +93,23 @@ pub enum SurroundingError {
     },
     /// A seat that shares nodes with what is fixed.
     #[error(
-        "body \"{body}\": node {node} of the seat \"{seat}\" is fixed as well; a seat that does not move is \
-         `support = \"clamped\"`, so separate the two groups"
+        "body \"{body}\": node {node} of {seat} is fixed as well; a seat that does not move is \
+         `support = \"clamped\"`, so {advice}"
     )]
     FixedSeat {
         /// Name of the body.
         body: String,
-        /// The seat.
+        /// The seat, in words.
         seat: String,
         /// Node, as its source numbers it.
         node: u64,
+        /// What to do.
+        advice: &'static str,
     },
     /// The seat is no cylinder about z.
     #[error(
         "{what} is no cylinder about the z axis: node {node} lies at a radius of {radius_mm:.4} mm, most others at \
-         {most_mm:.4} mm; move the mesh so that the axis of the seat is z, and choose the facets of the cylinder only"
+         {most_mm:.4} mm; {advice}"
     )]
     NoCylinder {
         /// The seat.
@@ -119,11 +120,13 @@ pub enum SurroundingError {
         radius_mm: f64,
         /// Median radius, mm.
         most_mm: f64,
+        /// What to do.
+        advice: &'static str,
     },
     /// Ring and seat of the body have different radii.
     #[error(
         "the seat of body \"{body}\" has a radius of {found_mm:.4} mm, that of the ring has {expected_mm:.4} mm; \
-         expected the same to {limit} %, so check mesh_unit and the group{unit}"
+         expected the same to {limit} %, so check {advice}{unit}"
     )]
     Radius {
         /// Name of the body.
@@ -134,13 +137,15 @@ pub enum SurroundingError {
         expected_mm: f64,
         /// Allowed difference, per cent.
         limit: f64,
+        /// The keys to check.
+        advice: &'static str,
         /// The unit that would fit, as a remark.
         unit: String,
     },
     /// Ring and seat of the body have different widths.
     #[error(
         "the seat of body \"{body}\" is {found_mm:.4} mm wide, that of the ring {expected_mm:.4} mm; expected the same \
-         to {limit} %: split the bore of the body in Gmsh where the seat of the ring ends"
+         to {limit} %: {advice}"
     )]
     Width {
         /// Name of the body.
@@ -151,12 +156,14 @@ pub enum SurroundingError {
         expected_mm: f64,
         /// Allowed difference, per cent.
         limit: f64,
+        /// What to do.
+        advice: &'static str,
     },
     /// The ring stands beside its seat.
     #[error(
         "the ring stands beside {what}: its middle lies {beside_mm:.4} mm along z from that of the seat, which is \
-         {width_mm:.4} mm wide; expected at most {most_mm:.4} mm: give another z of the seat, or none for the middle \
-         of its group"
+         {width_mm:.4} mm wide; expected at most {most_mm:.4} mm: give another z of the seat, or none for its middle \
+         in the body"
     )]
     Beside {
         /// The seat.
@@ -170,8 +177,8 @@ pub enum SurroundingError {
     },
     /// The nodes of a seat do not tell the functions apart.
     #[error(
-        "{what} has {nodes} nodes, too few or too uneven for {functions} functions of the seat; use a finer mesh \
-         there, or fewer harmonics or across"
+        "{what} has {nodes} nodes, too few or too uneven for {functions} functions of the seat; {advice}, \
+         or fewer harmonics or across"
     )]
     TooFewNodes {
         /// The seat.
@@ -180,6 +187,8 @@ pub enum SurroundingError {
         nodes: usize,
         /// Functions of a component.
         functions: usize,
+        /// What to do.
+        advice: &'static str,
     },
     /// A file of a body cannot be read.
     #[error("cannot read {}: {source}", path.display())]
@@ -198,6 +207,32 @@ pub enum SurroundingError {
         line: usize,
         /// What is wrong, what was expected, what to do.
         problem: String,
+    },
+    /// A whole stiffness that a rigid motion strains.
+    #[error(
+        "body \"{body}\": the stiffness is not that of a free body: {found}, because fixed_nodes hold the body: export \
+         the stiffness without supports and springs to ground, in the frame and unit of the nodes; of a body on \
+         springs give the feet as nodes of the matrix and name them in fixed_nodes, or take out the rows of held nodes \
+         and leave fixed_nodes away"
+    )]
+    StrainedByMotion {
+        /// Name of the body.
+        body: String,
+        /// The motion, the largest force and what was expected.
+        found: String,
+    },
+    /// A mass that a motion makes negative.
+    #[error(
+        "body \"{body}\": the mass matrix is not positive: elimination fails at node {node} in {axis}, so it and nodes \
+         around could move with a negative kinetic energy; correct the entries there, or export the mass once more"
+    )]
+    MassNotPositive {
+        /// Name of the body.
+        body: String,
+        /// Node, as its source numbers it.
+        node: u64,
+        /// Direction.
+        axis: &'static str,
     },
     /// The matrix is not symmetric.
     #[error(
@@ -231,6 +266,48 @@ pub enum SurroundingError {
         /// Cause.
         source: SolverError,
     },
+}
+
+impl SurroundingError {
+    /// The same with what to do about matrices and lists of nodes in the place of meshes and groups.
+    pub(crate) fn of_matrices(mut self) -> SurroundingError {
+        use SurroundingError::{FixedSeat, NoCylinder, NotHeld, Radius, TooFewNodes, Width};
+        match &mut self {
+            NotHeld { advice, .. } => *advice = matrix_advice::HELD,
+            FixedSeat { advice, .. } => *advice = matrix_advice::FIXED,
+            NoCylinder { advice, .. } => *advice = matrix_advice::CYLINDER,
+            Radius { advice, .. } => *advice = matrix_advice::RADIUS,
+            Width { advice, .. } => *advice = matrix_advice::WIDTH,
+            TooFewNodes { advice, .. } => *advice = matrix_advice::NODES,
+            _ => (),
+        }
+        self
+    }
+}
+
+/// What to do about a mesh.
+pub(crate) mod mesh_advice {
+    pub const HELD: &str = "name the groups that stand on the ground in `fixed`, and check that the body is one \
+                            connected part";
+    pub const FIXED: &str = "separate the two groups";
+    pub const CYLINDER: &str =
+        "move the mesh so that the axis of the seat is z, and choose the facets of the cylinder only";
+    pub const RADIUS: &str = "mesh_unit and the group";
+    pub const WIDTH: &str = "split the bore of the body in Gmsh where the seat of the ring ends";
+    pub const NODES: &str = "use a finer mesh there";
+}
+
+/// What to do about matrices.
+mod matrix_advice {
+    pub const HELD: &str = "list the nodes that stand on the ground in fixed_nodes, or export the stiffness of a body \
+                            that is held and one connected part; a stiffness with wrong entries ends here too";
+    pub const FIXED: &str = "take it out of fixed_nodes or of seat_nodes";
+    pub const CYLINDER: &str = "give the file `nodes` in a frame whose z is the axis of the seat, and list in \
+                                seat_nodes nodes of the cylinder only";
+    pub const RADIUS: &str = "length_unit, the file `nodes` and the nodes in seat_nodes";
+    pub const WIDTH: &str = "list in seat_nodes all nodes of the bore from one end of the seat of the ring to the \
+                             other, and check length_unit; the body needs nodes where the seat ends";
+    pub const NODES: &str = "list all nodes of the seat in seat_nodes, take a body with more of them";
 }
 
 fn at(line: usize) -> String {

@@ -11,8 +11,10 @@
 
 mod areas;
 mod carried;
+mod definite;
 mod error;
 mod frame;
+mod joint;
 pub mod matrix;
 mod on_shaft;
 mod oscillators;
@@ -28,8 +30,9 @@ pub use areas::cylinder_areas;
 pub use carried::{Carried, CarriedInertia, N_SHAFT};
 pub use error::SurroundingError;
 pub use frame::{FrameForms, length};
+pub use joint::BodySeat;
 pub use oscillators::{BodyModes, SeatModes, ShaftAtSeat, shaft_motion};
 pub use rows::SeatRows;
 pub use seat::{SeatBasis, SeatCylinder, SeatFunctions, SeatSpace};
-pub use surrounding::{BodySeat, Surrounding};
+pub use surrounding::Surrounding;
 pub use tie::{SeatTie, SeatTraction, TieConvergence};

@@ -22,6 +22,9 @@ use crate::seat::SeatCylinder;
 /// Allowed difference of mirrored entries, over the geometric mean of their diagonal entries.
 const SYMMETRY: f64 = 1e-8;
 
+/// Largest entry over that geometric mean: 1 of a spring between two dofs, with the last digits of seven.
+const PAIR: f64 = 1.0 + 1e-6;
+
 /// Files of a body and their units.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MatrixFiles {
@@ -337,7 +340,7 @@ fn n_entries(
     }
 }
 
-/// Positive diagonal, and symmetric.
+/// Positive diagonal, symmetric, and no pair of dofs of negative energy.
 fn require_sound(
     (path, what): (&Path, &str),
     matrix: &CsMat<f64>,
@@ -359,13 +362,23 @@ fn require_sound(
     for (i, row) in matrix.outer_iterator().enumerate() {
         for (j, &value) in row.iter() {
             let other = matrix.get(j, i).copied().unwrap_or(0.0);
-            if (value - other).abs() > SYMMETRY * (diagonal[i] * diagonal[j]).sqrt() {
+            let most = (diagonal[i] * diagonal[j]).sqrt();
+            if (value - other).abs() > SYMMETRY * most {
                 return Err(SurroundingError::NotSymmetric {
                     path: path.to_path_buf(),
                     places: [place(i), place(j)],
                     value,
                     other,
                 });
+            }
+            if i != j && value.abs() > PAIR * most {
+                let [(node, axis), (other, along)] = [place(i), place(j)];
+                let problem = format!(
+                    "the {what} is not positive: node {node} {axis} with node {other} {along} has {value:e}, more than \
+                     the root of the product of their own entries, {most:e}; so they could move with a negative \
+                     energy: correct the entry, or export the matrix once more"
+                );
+                return Err(wrong(path, 0, problem));
             }
         }
     }

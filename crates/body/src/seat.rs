@@ -19,7 +19,7 @@
 
 use dense::DenseCholesky;
 
-use crate::error::SurroundingError;
+use crate::error::{SurroundingError, mesh_advice};
 use crate::rows::SeatRows;
 
 /// Largest condition number of M: below 10 for even meshes that resolve the functions; 1e6 where they cannot be told
@@ -89,6 +89,7 @@ impl SeatCylinder {
                 node: *node,
                 radius_mm: 1e3 * radius_of(x),
                 most_mm: 1e3 * radius,
+                advice: mesh_advice::CYLINDER,
             });
         }
         let ends = nodes
@@ -230,6 +231,7 @@ impl SeatFunctions {
             what: what.to_string(),
             nodes: nodes.len(),
             functions: n_scalars,
+            advice: mesh_advice::NODES,
         };
         let places: Vec<[f64; 3]> = nodes.iter().map(|&node| place(node)).collect();
         let weights: Vec<f64> = areas.iter().map(|a| a.1).collect();

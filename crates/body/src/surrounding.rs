@@ -11,32 +11,14 @@ use solver::{LinearSolver, SolverError, SparseCholesky, Symbolic, angular_dissec
 use sprs::CsMat;
 
 use crate::carried::Carried;
-use crate::error::{AXES, SurroundingError};
+use crate::definite::require_positive_mass;
+use crate::error::{AXES, SurroundingError, mesh_advice};
+use crate::joint::{BodySeat, SeatJoint, joint, refuse_fixed};
 use crate::matrix::MatrixBody;
-use crate::seat::{SeatCylinder, SeatFunctions, SeatSpace};
+use crate::seat::SeatFunctions;
 
 /// Columns that are solved for together: a factor is read once for them. Fixed, so that threads change no bit.
 const BLOCK: usize = 16;
-/// Allowed difference of the radii of ring and seat, share.
-const RADIUS_TOLERANCE: f64 = 2e-3;
-/// The same of the widths.
-const WIDTH_TOLERANCE: f64 = 1e-2;
-/// Allowed distance along z of the middles of ring and seat, share of the width: a chamfer.
-const PLACE_TOLERANCE: f64 = 0.1;
-
-/// A seat of a body and the functions that are tied there.
-#[derive(Clone, Debug)]
-pub struct BodySeat {
-    /// Facet group; of a body from matrices any name.
-    pub group: String,
-    /// Functions in the coordinates of its ring.
-    pub space: SeatSpace,
-    /// Where the middle of the seat stands in the body, m along its ring's z; None: in its own middle.
-    pub middle: Option<f64>,
-    /// Whether its ring stands turned by 180 deg about x in the frame of the body.
-    pub is_turned: bool,
-}
-
 /// A held elastic body, factored.
 pub struct Surrounding {
     /// Its name.
@@ -130,10 +112,15 @@ impl Surrounding {
         matrix: &MatrixBody,
         seat: &BodySeat,
     ) -> Result<Surrounding, SurroundingError> {
+        Surrounding::of_nodes(name, matrix, seat).map_err(SurroundingError::of_matrices)
+    }
+
+    fn of_nodes(name: &str, matrix: &MatrixBody, seat: &BodySeat) -> Result<Surrounding, SurroundingError> {
         let start = Instant::now();
         let areas = matrix.seat_areas(name)?;
         let joints = vec![joint(name, seat, &areas, &matrix.places, &matrix.tags)?];
         refuse_fixed(name, seat, &areas, &matrix.fixed, &matrix.tags)?;
+        matrix.require_free(name)?;
         let pairs = matrix.neighbours();
         let held = Unfactored {
             name: name.to_string(),
@@ -146,10 +133,10 @@ impl Surrounding {
         };
         let mut body = held.condense(joints, start)?;
         let free = |of: &CsMat<f64>| solver::restrict(of, &body.free);
-        body.matrices = matrix
-            .mass
-            .as_ref()
-            .map(|mass| [free(&matrix.stiffness), free(mass)]);
+        if let Some(mass) = &matrix.mass {
+            require_positive_mass(matrix, (name, mass), (&body.free, &pairs))?;
+            body.matrices = Some([free(&matrix.stiffness), free(mass)]);
+        }
         Ok(body)
     }
 
@@ -285,6 +272,7 @@ impl Unfactored<'_> {
                     body: self.name.clone(),
                     node: self.tags[free[row] / 3],
                     axis: AXES[free[row] % 3],
+                    advice: mesh_advice::HELD,
                 }
             }
             source => SurroundingError::Solver {
@@ -375,121 +363,4 @@ fn require_group(body: &str, mesh: &Mesh, group: &str, key: &'static str) -> Res
         known: known.join(", "),
         key,
     })
-}
-
-/// A seat on the body's side.
-struct SeatJoint {
-    functions: SeatFunctions,
-    /// What is added to z for the coordinates of its ring, m.
-    shift: f64,
-    /// Its middle along the body's z, m.
-    middle: f64,
-    /// Whether its ring stands turned by 180 deg about x.
-    is_turned: bool,
-}
-
-/// Where the ring's middle stands along the seat whose own middle is `middle`, m.
-fn middle_of_ring(what: &str, seat: &BodySeat, middle: f64) -> Result<f64, SurroundingError> {
-    let of_ring = seat.middle.unwrap_or(middle);
-    let (beside, width) = ((of_ring - middle).abs(), 2.0 * seat.space.half_width);
-    if beside > PLACE_TOLERANCE * width {
-        return Err(SurroundingError::Beside {
-            what: what.to_string(),
-            beside_mm: 1e3 * beside,
-            width_mm: 1e3 * width,
-            most_mm: 1e3 * PLACE_TOLERANCE * width,
-        });
-    }
-    Ok(of_ring)
-}
-
-/// The functions of a seat on the body's side.
-fn joint(
-    body: &str,
-    seat: &BodySeat,
-    areas: &[(usize, f64)],
-    places: &[[f64; 3]],
-    tags: &[u64],
-) -> Result<SeatJoint, SurroundingError> {
-    let what = format!("the seat \"{}\" of body \"{body}\"", seat.group);
-    let sign = if seat.is_turned { -1.0 } else { 1.0 };
-    let in_ring = |node: usize| {
-        let [x, y, z] = places[node];
-        [x, sign * y, sign * z]
-    };
-    let nodes = areas.iter().map(|&(node, _)| (tags[node], in_ring(node)));
-    let cylinder = SeatCylinder::of_nodes(&what, nodes)?;
-    let space = &seat.space;
-    let ratio = cylinder.radius / space.radius;
-    if (ratio - 1.0).abs() > RADIUS_TOLERANCE {
-        return Err(SurroundingError::Radius {
-            body: body.to_string(),
-            found_mm: 1e3 * cylinder.radius,
-            expected_mm: 1e3 * space.radius,
-            limit: 100.0 * RADIUS_TOLERANCE,
-            unit: unit_of(ratio),
-        });
-    }
-    let width = 2.0 * space.half_width;
-    if (cylinder.width() / width - 1.0).abs() > WIDTH_TOLERANCE {
-        return Err(SurroundingError::Width {
-            body: body.to_string(),
-            found_mm: 1e3 * cylinder.width(),
-            expected_mm: 1e3 * width,
-            limit: 100.0 * WIDTH_TOLERANCE,
-        });
-    }
-    let middle = middle_of_ring(&what, seat, cylinder.middle())?;
-    let shift = space.middle - middle;
-    let place = |node: usize| {
-        let [x, y, z] = in_ring(node);
-        [x, y, z + shift]
-    };
-    let mut functions = SeatFunctions::new(&what, *space, areas, place)?;
-    if seat.is_turned {
-        functions.half_turn();
-    }
-    Ok(SeatJoint {
-        functions,
-        shift,
-        middle: sign * middle,
-        is_turned: seat.is_turned,
-    })
-}
-
-/// A remark on the unit of a mesh whose seat is `ratio` times too large.
-fn unit_of(ratio: f64) -> String {
-    for (factor, remark) in [
-        (
-            1e3,
-            "its lengths seem to be in a unit 1000 times smaller, such as mm for m",
-        ),
-        (
-            1e-3,
-            "its lengths seem to be in a unit 1000 times larger, such as m for mm",
-        ),
-        (1.0 / 25.4, "its lengths seem to be in inch"),
-    ] {
-        if (ratio / factor - 1.0).abs() < 0.05 {
-            return format!("; {remark}");
-        }
-    }
-    String::new()
-}
-
-fn refuse_fixed(
-    body: &str,
-    seat: &BodySeat,
-    areas: &[(usize, f64)],
-    fixed: &[bool],
-    tags: &[u64],
-) -> Result<(), SurroundingError> {
-    match areas.iter().find(|(node, _)| fixed[*node]) {
-        None => Ok(()),
-        Some(&(node, _)) => Err(SurroundingError::FixedSeat {
-            body: body.to_string(),
-            seat: seat.group.clone(),
-            node: tags[node],
-        }),
-    }
 }

@@ -44,7 +44,19 @@ pub struct ModesAtSpeed {
 impl ModesAtSpeed {
     /// Speed of the shaft, rpm.
     pub fn rpm(&self) -> f64 {
-        self.speeds[0] * 30.0 / PI
+        without_round_off(self.speeds[0] * 30.0 / PI)
+    }
+}
+
+/// Speeds, rpm, are told to this part of one; a diagram asks for them in rpm, and rad/s and back costs the last digit.
+const OF_RPM: f64 = 1e9;
+
+/// A speed, rpm, without the round-off of its way through rad/s; the digits stay where that would cost some.
+fn without_round_off(rpm: f64) -> f64 {
+    let rounded = (rpm * OF_RPM).round() / OF_RPM;
+    match (rounded - rpm).abs() <= 4.0 * f64::EPSILON * rpm.abs() {
+        true => rounded,
+        false => rpm,
     }
 }
 

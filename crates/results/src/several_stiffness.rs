@@ -11,6 +11,7 @@ use std::path::Path;
 
 use comm::print;
 use dynamics::bodies::AXES;
+use dynamics::kinematics::BothRings;
 use dynamics::stiffness::{N_SHAFT, ShaftMatrix};
 use serde::Serialize;
 
@@ -38,8 +39,23 @@ pub struct ShaftStiffnessAt {
     pub speed: f64,
     /// Stiffness.
     pub stiffness: ShaftMatrix,
+    /// Damping; null where the scene has no damping law.
+    pub damping: Option<ShaftMatrix>,
     /// Displacement there, m and rad.
     pub displacement: [f64; N_SHAFT],
+    /// The equilibrium; what bearings and balls carry stands in those of the bearings.
+    pub operating_point: ShaftOperatingPoint,
+}
+
+/// The equilibrium of the shaft.
+#[derive(Clone, Debug, Serialize)]
+pub struct ShaftOperatingPoint {
+    /// Instant, s.
+    pub time_s: f64,
+    /// Speeds of the rings in the frame of the shaft, inner first, rad/s.
+    pub speed_rad_per_s: BothRings,
+    /// Displacement of the point, m and rad.
+    pub shaft_displacement: [f64; N_SHAFT],
 }
 
 /// A bearing with its matrices at all points.
@@ -64,6 +80,8 @@ pub struct CouplingStiffness {
     pub moved: String,
     /// Stiffness at all points.
     pub stiffness: Vec<ShaftMatrix>,
+    /// Damping at all points; null where there is none.
+    pub damping: Vec<Option<ShaftMatrix>>,
 }
 
 /// Everything that is written.
@@ -81,6 +99,8 @@ pub struct SeveralStiffness {
     pub shaft: Vec<ShaftStiffnessAt>,
     /// What bearings do to each other through a body that carries them.
     pub couplings: Vec<CouplingStiffness>,
+    /// What the damping of the shaft is, or why there is none.
+    pub damping_note: String,
     /// Warnings a user should read.
     pub warnings: Vec<String>,
 }
@@ -91,6 +111,7 @@ struct FileOfSeveral<'a> {
     source: &'a str,
     order: [&'static str; N_SHAFT],
     units: &'static str,
+    damping_note: &'a str,
     warnings: &'a [String],
     #[serde(skip_serializing_if = "Option::is_none")]
     column: Option<&'a str>,
@@ -146,7 +167,7 @@ impl SeveralStiffness {
             value: point.value,
             speed: point.speed,
             stiffness: point.stiffness,
-            damping: None,
+            damping: point.damping,
         };
         let lines: Vec<TableLine> = self.shaft.iter().map(line).collect();
         let own = table(self.column.as_deref(), &lines)?;
@@ -182,6 +203,7 @@ impl SeveralStiffness {
             source: &self.source,
             order: AXES,
             units: UNITS,
+            damping_note: &self.damping_note,
             warnings: &self.warnings,
             column: self.column.as_deref(),
             shaft: ShaftOfFile {
@@ -224,7 +246,10 @@ impl SeveralStiffness {
                 1e3 * self.position
             );
             print_matrix(&title, &shaft.stiffness);
+            let damping = shaft.damping.iter();
+            damping.for_each(|damping| print_matrix("damping there, N s/m and so on", damping));
         }
+        print::line(format_args!("damping: {}", self.damping_note));
         print_warnings(&self.warnings);
     }
 }

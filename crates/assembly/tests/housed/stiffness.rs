@@ -3,6 +3,8 @@
 use assembly::stiffness::LinearAssembly;
 use assembly::whirl::TurningAssembly;
 use dynamics::DampingLaws;
+use dynamics::effects::RingDamping;
+use dynamics::interactions::contact_damping::ContactDamping;
 use ring::rigid::RigidInertia;
 
 use super::shaft::{CARRIED, HELD_BELOW, on_one, on_two};
@@ -234,4 +236,86 @@ fn differences_of_places(list: Assembly) {
         error < 1e-8,
         "loads that follow nothing have an energy: {error:e}"
     );
+}
+
+/// Contacts and rings that damp.
+const LAWS: DampingLaws = DampingLaws {
+    contacts: Some(ContactDamping {
+        coefficient: 500.0,
+        full_approach: 1e-6,
+    }),
+    rings: Some(RingDamping {
+        mass: 0.0,
+        stiffness: 1e-6,
+    }),
+};
+
+fn damped(mut list: Assembly) -> (Assembly, AssemblySolver, AssemblySolution, LinearAssembly) {
+    let mut solver = AssemblySolver::new(&list).unwrap();
+    let solution = solver.solve(&mut list, None).unwrap_or_else(|e| panic!("{e}"));
+    let linear = LinearAssembly::new(&list, &solver, &solution, LAWS).unwrap();
+    (list, solver, solution, linear)
+}
+
+/// Wrong: bearings would lose damping, or share it, in a body that does not join their seats.
+#[test]
+fn the_damping_in_a_body_in_two_parts_is_that_in_two_bodies() {
+    let (.., found) = damped(tied_pair(Side::Outer, in_one(false, 70e9), [0, 1]));
+    let (.., expected) = damped(tied_pair(Side::Outer, in_two(), [0, 1]));
+    for (found, expected) in found.damping.iter().zip(&expected.damping) {
+        let [found, expected] = [found.unwrap(), expected.unwrap()];
+        let error = off(found.as_flattened(), expected.as_flattened());
+        assert!(error < 1e-7, "{error:e}");
+    }
+    for coupling in &found.couplings {
+        let own = found.damping[coupling.moved].unwrap();
+        let share = largest(coupling.damping.unwrap().as_flattened()) / largest(own.as_flattened());
+        assert!(share < 1e-7, "{share:e}");
+    }
+    assert!(found.couplings.len() == 2);
+}
+
+/// Wrong: the damping of a shaft on bearings in one body would not be that of its modes. A heavy shaft swings slowly on
+/// both matrices, with f + e zeta / 2 pi on K + e C; the modes over the speed have bodies with all oscillators.
+#[test]
+fn the_damping_of_a_shaft_in_one_body_is_that_of_its_modes() {
+    let heavy = RigidInertia {
+        mass: 30000.0,
+        first_moment: 0.0,
+        transverse: 80.0,
+        polar: 60.0,
+    };
+    for list in [
+        tied_pair(Side::Outer, in_one(true, 5e9), [0, 1]),
+        in_and_on(in_one(true, 5e9), on_one(true, HELD_BELOW)),
+    ] {
+        let mut list = list;
+        list.shaft = ShaftBody::rigid(heavy, [None; 5]);
+        let (list, solver, solution, linear) = damped(list);
+        let turning = TurningAssembly::new(&list).unwrap();
+        let equations = turning.equations((&list, &solver), (&solution, &linear), 0.0);
+        let modes = equations.unwrap().modes().unwrap();
+        let found: Vec<f64> = modes
+            .iter()
+            .filter(|mode| mode.standing_share < 1.0 - 1e-9 && mode.frequency > 0.0)
+            .map(|mode| mode.damping_ratio)
+            .take(5)
+            .collect();
+        let stiffness = linear.of_shaft(&list, 0.0).unwrap();
+        let damping = linear.damping_of_shaft(&list, 0.0).unwrap().unwrap();
+        let step = 1e-2 * stiffness[0][0] / damping[0][0];
+        let at = |sign: f64| {
+            let entry = |i: usize, j: usize| stiffness[i][j] + sign * step * damping[i][j];
+            swings(
+                &heavy,
+                &std::array::from_fn(|i| std::array::from_fn(|j| entry(i, j))),
+            )
+        };
+        let pairs = at(-1.0).into_iter().zip(at(1.0));
+        let expected: Vec<f64> = pairs
+            .map(|(low, high)| std::f64::consts::TAU * (high - low) / (2.0 * step))
+            .collect();
+        println!("{found:?} {expected:?}");
+        assert!(off(&found, &expected) < 2e-2, "{found:?} {expected:?}");
+    }
 }

@@ -2,6 +2,7 @@
 
 mod matrices;
 mod vibration;
+mod wrong_matrices;
 
 use std::collections::BTreeMap;
 use std::f64::consts::{PI, TAU};
@@ -363,7 +364,7 @@ fn a_ring_beside_its_seat_is_refused_with_its_distance() {
     assert_eq!(with(Some(middle + 1.5e-3)), None);
     let expected = "the ring stands beside the seat \"seat_a\" of body \"tube\": its middle lies 60.0000 mm along z \
                     from that of the seat, which is 16.0000 mm wide; expected at most 1.6000 mm: give another z of \
-                    the seat, or none for the middle of its group";
+                    the seat, or none for its middle in the body";
     assert_eq!(with(Some(middle - 60e-3)).as_deref(), Some(expected));
 }
 

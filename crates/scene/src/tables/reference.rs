@@ -31,6 +31,10 @@ pub const OTHERS: [&str; 19] = [
     include_str!("example_life.toml"),
     include_str!("example_heat.toml"),
 ];
+/// Tables of a list of bearings on one shaft.
+pub const SEVERAL: &str = include_str!("example_several.toml");
+/// Tables of [`SEVERAL`] that a scene with one bearing has as well.
+const OF_BOTH: [&str; 4] = ["", "solver", "output", "static"];
 /// Tables of [`MOTION`] that say more than those of [`REST`].
 const OF_MOTION: [&str; 4] = ["shaft", "speed", "output", "dynamic"];
 
@@ -94,20 +98,29 @@ pub fn all() -> Vec<ReferenceTable> {
     all
 }
 
+/// The tables that only a list of bearings has, or that say something else there.
+pub fn of_lists() -> Vec<ReferenceTable> {
+    let is_own = |block: &ReferenceTable| !OF_BOTH.contains(&block.table.as_str());
+    blocks(SEVERAL).into_iter().filter(is_own).collect()
+}
+
 /// The tables that have a key, or whose name begins with `topic`: `bearing`, `bearing.width`, `width`.
 pub fn about(topic: &str) -> Vec<ReferenceTable> {
     let topic = topic.trim_matches(['[', ']']);
-    let all = all();
+    let all = [all(), of_lists()].concat();
     let is_table =
         |block: &&ReferenceTable| block.table == topic || block.table.starts_with(&format!("{topic}."));
-    let tables: Vec<ReferenceTable> = all.iter().filter(is_table).cloned().collect();
-    if !tables.is_empty() {
-        return tables;
-    }
     let has_key = |block: &&ReferenceTable| match topic.rsplit_once('.') {
         Some((table, key)) => block.table == table && block.keys().contains(&key),
         None => block.keys().contains(&topic) || block.table.ends_with(&format!(".{topic}")),
     };
+    // A dotted name may be a key of one kind of scene, and a table of the other.
+    let is_dotted = topic.contains('.');
+    let both = |block: &&ReferenceTable| is_table(block) || is_dotted && has_key(block);
+    let tables: Vec<ReferenceTable> = all.iter().filter(both).cloned().collect();
+    if !tables.is_empty() {
+        return tables;
+    }
     all.iter().filter(has_key).cloned().collect()
 }
 
@@ -134,8 +147,22 @@ pub fn whole_page() -> String {
     format!(
         "# Reference of scenes\n\nEvery table and key of a scene, with its comment. `raceway help scene` prints this \
          page, `raceway help scene KEY`\nwhat it says of a table or a key. What scenes are for: \
-         [scenes.md](scenes.md).\n{}",
-        page(&all())
+         [scenes.md](scenes.md).\n{}{}",
+        page(&all()),
+        page_of_lists()
+    )
+}
+
+/// The part on lists.
+fn page_of_lists() -> String {
+    let blocks = of_lists();
+    let shown = blocks
+        .iter()
+        .map(|block| format!("\n```toml\n{}\n```\n", block.text));
+    format!(
+        "\n## A list of bearings\n\nTables that only a list `[[bearing]]` has, or that say something else there \
+         ([several.md](several.md)).\n{}",
+        shown.collect::<String>()
     )
 }
 

@@ -7,6 +7,7 @@
 use std::path::Path;
 
 use assembly::Orientation;
+use dynamics::ContactMode;
 use dynamics::effects::{Context, Effects};
 use input::{Clock, Problems};
 use toml_edit::{DocumentMut, Item, Table, Value};
@@ -73,6 +74,7 @@ impl Composer<'_> {
             false => at_rest,
         };
         check_places(&raw.bearing, &scenes, &mut problems);
+        check_tangents(&raw.bearing, &scenes, &mut problems);
         let balls = scenes.iter().flatten().map(|s| s.bearing.ball_diameter);
         let largest_ball = balls.fold(0.0, f64::max);
         let shaft = raw.shaft.check(largest_ball, &mut problems);
@@ -383,6 +385,23 @@ fn copy_shared(list: &DocumentMut, document: &mut DocumentMut, left_out: &[&str]
             });
         }
         document.insert(name, item);
+    }
+}
+
+/// The shaft is balanced by the tangents of its bearings, which facets and edges of grooves do not have.
+fn check_tangents(raw: &[RawMounted], scenes: &[Option<Scene>], problems: &mut Problems) {
+    for (bearing, scene) in raw.iter().zip(scenes) {
+        let Some(scene) = scene else { continue };
+        let (key, instead) = match (scene.contact.mode, scene.contact.edges) {
+            (ContactMode::Facet, _) => ("contact.mode is \"facet\"", "contact.mode = \"patch\""),
+            (_, true) => ("contact.edges is true", "contact.edges = false"),
+            _ => continue,
+        };
+        problems.add(format!(
+            "{key} in the type of bearing {:?}, {}: a list balances its shaft by the stiffness of each bearing, and \
+             such contacts change it wherever a ball stands; expected {instead}, or one table [bearing]",
+            bearing.name, bearing.r#type
+        ));
     }
 }
 

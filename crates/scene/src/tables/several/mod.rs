@@ -68,7 +68,7 @@ const IN_BEARINGS: [&str; 9] = [
     deny_unknown_fields,
     expecting = "the tables of a scene with a list of bearings"
 )]
-struct RawSeveral {
+pub struct RawSeveral {
     title: Option<String>,
     #[serde(rename = "include")]
     _include: Option<IgnoredAny>,

@@ -87,8 +87,9 @@ impl RawPairing {
             }
             return None;
         };
+        let presses = force.si() > 0.0 && force.si() <= MAX_FORCE;
         problems.require(
-            force.si() > 0.0 && force.si() <= MAX_FORCE,
+            presses,
             "pairing.spring",
             force,
             "expected more than 0 and at most 1e9 N, the force that presses the outer ring against its balls",
@@ -108,7 +109,8 @@ impl RawPairing {
                 names.join(", ")
             ));
         }
-        found.map(|bearing| SpringPairing {
+        // The bearing would say the same of a key that the scene does not have.
+        found.filter(|_| presses).map(|bearing| SpringPairing {
             force: force.si(),
             bearing,
         })

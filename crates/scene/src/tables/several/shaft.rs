@@ -3,9 +3,10 @@
 use assembly::{BeamSection, BeamShaft, PointMass};
 use dynamics::model::MAX_TILT;
 use fem::Material;
-use input::{ANGLE, Clock, DENSITY, FORCE, INERTIA, LENGTH, MASS, MOMENT, Problems, Quantity, STRESS};
+use input::{ANGLE, Clock, FORCE, INERTIA, LENGTH, MASS, MOMENT, Problems, Quantity};
 use serde::Deserialize;
 
+use super::super::materials::RawMaterial;
 use super::super::shaft::{RawMotion, ShaftMotion};
 use super::load::ShaftLoad;
 use std::ops::RangeInclusive;
@@ -24,7 +25,7 @@ pub struct RawCommonShaft {
     mass: Option<RawMasses>,
     transverse_inertia: Option<Quantity<INERTIA>>,
     polar_inertia: Option<Quantity<INERTIA>>,
-    material: Option<RawSteel>,
+    material: Option<RawMaterial>,
     element_length: Option<Quantity<LENGTH>>,
     #[serde(default)]
     section: Vec<RawShaftSection>,
@@ -41,18 +42,6 @@ pub struct RawCommonShaft {
 enum RawMasses {
     Whole(Quantity<MASS>),
     Points(Vec<RawPointMass>),
-}
-
-/// As typed.
-#[derive(Debug, Deserialize)]
-#[serde(
-    deny_unknown_fields,
-    expecting = "young_modulus, poisson_ratio and density of the shaft"
-)]
-struct RawSteel {
-    young_modulus: Quantity<STRESS>,
-    poisson_ratio: f64,
-    density: Quantity<DENSITY>,
 }
 
 /// As typed.
@@ -95,6 +84,8 @@ pub struct CommonShaft {
     pub loads: Vec<ShaftLoad>,
     /// Masses along it.
     pub masses: Vec<PointMass>,
+    /// Numbers that a name stands for.
+    pub assumed: Vec<String>,
 }
 
 /// Rigid, or a beam.
@@ -141,13 +132,14 @@ impl RawCommonShaft {
 
     /// Checks everything; `largest_ball` limits prescribed displacements, m.
     pub fn check(&self, largest_ball: f64, problems: &mut Problems) -> Option<CommonShaft> {
+        let mut assumed = Vec::new();
         let kind = match self.model.as_deref() {
             None => {
                 problems.add(format!("shaft.model is missing; {MODELS}"));
                 None
             }
             Some("rigid") => Some(ShaftKind::Rigid(self.rigid(largest_ball, problems))),
-            Some("beam") => self.beam(problems).map(ShaftKind::Beam),
+            Some("beam") => self.beam(problems, &mut assumed).map(ShaftKind::Beam),
             Some(other) => {
                 problems.add(format!("shaft.model is {other:?}; {MODELS}"));
                 None
@@ -159,6 +151,7 @@ impl RawCommonShaft {
             load_point,
             loads: self.load.iter().map(RawLoad::load).collect(),
             masses: self.masses(problems),
+            assumed,
         };
         self.check_positions(&shaft, problems);
         Some(shaft)
@@ -237,18 +230,21 @@ impl RawCommonShaft {
         }
     }
 
-    fn beam(&self, problems: &mut Problems) -> Option<BeamShaft> {
+    fn beam(&self, problems: &mut Problems, assumed: &mut Vec<String>) -> Option<BeamShaft> {
         let before = problems.len();
         self.refuse_rigid_keys(problems);
         let Some(steel) = &self.material else {
             problems.add(
-                "shaft.material is missing; expected { young_modulus = \"207 GPa\", poisson_ratio = 0.3, density = \
-                 \"7800 kg/m3\" }",
+                "shaft.material is missing; expected a name such as \"bearing steel\", or { young_modulus = \
+                 \"207 GPa\", poisson_ratio = 0.3, density = \"7800 kg/m3\" }",
             );
             return None;
         };
-        let density = steel.density.si();
-        let material = Material::new(steel.young_modulus.si(), steel.poisson_ratio, density);
+        let steel = steel.check("shaft.material", problems, assumed);
+        if problems.len() > before {
+            return None;
+        }
+        let material = Material::new(steel.young_modulus, steel.poisson_ratio, steel.density);
         if let Err(error) = &material {
             problems.add(format!("shaft.material: {error}"));
         }

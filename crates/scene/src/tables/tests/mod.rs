@@ -25,6 +25,7 @@ mod schedules;
 mod several;
 mod several_bodies;
 mod several_over_time;
+mod several_slips;
 mod slips;
 mod sweeps;
 

@@ -1,5 +1,6 @@
 //! The reference of scenes against the program.
 
+use super::super::several::RawSeveral;
 use super::super::{gather, reference};
 use super::*;
 
@@ -14,11 +15,16 @@ fn taken(table: &str) -> Vec<String> {
         _ if table.starts_with("profiles.") => format!("[[{table}]]\nno_such_key = 1\n"),
         _ => format!("[{table}]\nno_such_key = 1\n"),
     };
-    let found = gather::read::<RawScene>(&header).unwrap_err();
+    taken_by::<RawScene>(&header)
+}
+
+/// The same of a kind of scene, under a header with a key that it does not take.
+fn taken_by<T: serde::de::DeserializeOwned>(header: &str) -> Vec<String> {
+    let found = gather::read::<T>(header).map(|_| ()).unwrap_err();
     let unknown = found
         .iter()
         .find(|finding| finding.message.starts_with("unknown field `no_such_key`"));
-    let message = &unknown.unwrap_or_else(|| panic!("[{table}]: {found:?}")).message;
+    let message = &unknown.unwrap_or_else(|| panic!("{header}: {found:?}")).message;
     message
         .split('`')
         .skip(3)
@@ -95,6 +101,32 @@ fn every_table_of_the_program_is_in_the_reference() {
     }
 }
 
+/// Wrong: a key of a list would be in the program but not in its reference, or the reference show one that is refused.
+#[test]
+fn every_key_of_a_list_is_in_the_reference_and_none_other() {
+    let all = reference::of_lists();
+    for table in ["bearing", "pairing", "shaft", "shaft.section", "shaft.load"] {
+        let header = match table {
+            "pairing" | "shaft" => format!("[{table}]"),
+            _ => format!("[[{table}]]"),
+        };
+        let taken = taken_by::<RawSeveral>(&format!("{header}\nno_such_key = 1\n"));
+        let own = || all.iter().filter(|block| block.table == table);
+        let text: String = own().map(|block| block.text.clone() + "\n").collect();
+        for key in &taken {
+            let inside = format!("{table}.{key}");
+            let is_shown = text.contains(key.as_str()) || all.iter().any(|block| block.table == inside);
+            assert!(
+                is_shown,
+                "[{table}] takes {key}, which the reference does not show"
+            );
+        }
+        for key in own().flat_map(reference::ReferenceTable::keys) {
+            assert!(taken.iter().any(|t| t == key), "[{table}] does not take {key}");
+        }
+    }
+}
+
 /// Wrong: the page of the documentation would be another than what the program prints.
 #[test]
 fn the_page_is_what_the_program_prints() {
@@ -121,6 +153,18 @@ fn keys_are_found_by_their_name_and_by_that_of_their_table() {
         tables("dynamic"),
         ["dynamic", "dynamic.adaptive", "dynamic.start.given"]
     );
-    assert_eq!(tables("shaft.mass"), ["shaft"]);
+    assert_eq!(tables("shaft.mass"), ["shaft", "shaft.mass"]);
+    assert_eq!(tables("pairing"), ["pairing"]);
+    assert_eq!(tables("shaft.load"), ["shaft.load"]);
+    assert_eq!(tables("shaft.section"), ["shaft.section"]);
+    assert_eq!(tables("bearing.position"), ["bearing", "bearing"]);
+    let of_both = [
+        "bearing",
+        "bearing",
+        "bearing.ball_diameters",
+        "bearing",
+        "bearing",
+    ];
+    assert_eq!(tables("bearing"), of_both);
     assert_eq!(tables("cheese"), Vec::<String>::new());
 }

@@ -7,7 +7,7 @@ use assembly::Orientation;
 use super::*;
 
 /// A folder with the type of the example's bearing.
-pub(super) struct Lists(PathBuf);
+pub(super) struct Lists(pub(super) PathBuf);
 
 impl Lists {
     pub(super) fn new(name: &str) -> Lists {
@@ -67,7 +67,7 @@ fn parts() -> [String; 2] {
     [kind, rest]
 }
 
-fn kind() -> String {
+pub(super) fn kind() -> String {
     parts()[0].replace("\"../meshes/", "\"../../meshes/")
 }
 
