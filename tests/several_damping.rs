@@ -42,6 +42,15 @@ fn stiffness(dir: &Dir, scene: &str, out: &str) -> (Value, String) {
     )
 }
 
+/// A column of numbers of `campbell.csv`, which has words in others.
+fn modes_column(dir: &Dir, out: &str, column: &str) -> Vec<f64> {
+    let text = dir.text(&format!("{out}/campbell.csv"));
+    let mut rows = text.lines().map(|line| line.split(',').collect::<Vec<_>>());
+    let place = rows.next().unwrap().iter().position(|name| *name == column);
+    let place = place.unwrap_or_else(|| panic!("no column {column}: {text}"));
+    rows.map(|row| row[place].parse().unwrap()).collect()
+}
+
 fn matrix(json: &Value) -> [[f64; 5]; 5] {
     assert!(json.is_array(), "{json}");
     std::array::from_fn(|i| std::array::from_fn(|j| json[i][j].as_f64().unwrap()))
@@ -69,7 +78,10 @@ fn a_list_of_one_bearing_has_the_damping_of_the_bearing() {
     dir.write("list.toml", bearing("only", "0 mm", "+z") + &loaded_shaft());
     dir.write(
         "single.toml",
-        format!("{}\n[shaft]\n{MOTION}{LOAD}", dir.text("types/kind.toml")),
+        format!(
+            "{}\n[shaft]\nload_point = \"0 mm\"\n{MOTION}{LOAD}",
+            dir.text("types/kind.toml")
+        ),
     );
     let (alone, said_alone) = stiffness(&dir, "single.toml", "k1");
     let (list, said) = stiffness(&dir, "list.toml", "k2");
@@ -107,15 +119,14 @@ fn a_list_of_one_bearing_has_the_damping_of_the_bearing() {
         );
         assert!(said.stdout.contains(line), "{}", said.stdout);
     }
-    let tables = ["c_single", "c_list"].map(|out| Table::read(&dir, &format!("{out}/campbell.csv")));
-    let [expected, found] = tables.each_ref().map(|table| table.column("damping_ratio"));
+    let [expected, found] = ["c_single", "c_list"].map(|out| modes_column(&dir, out, "damping_ratio"));
     assert_eq!(expected.len(), found.len());
     for (found, expected) in found.iter().zip(&expected) {
         assert_close("damping ratio", *found, *expected, 1e-9);
-        assert!(*expected > 1e-4, "{expected}");
+        assert!(*expected > 1e-6, "{expected}");
     }
     // Speeds are those that were asked for, to the last digit.
-    assert_eq!(tables[1].column("speed_rpm")[0], 1000.0);
+    assert_eq!(modes_column(&dir, "c_list", "speed_rpm")[0], 1000.0);
 }
 
 /// Wrong: a rigid shaft would not have the damping of both bearings, at their places. Point at 0: a bearing at z moves
