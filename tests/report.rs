@@ -34,8 +34,8 @@ fn the_page_of_a_run_stands_alone() {
     assert!(page.contains(&meshes), "{meshes}");
     let title = summary["title"].as_str().unwrap().to_string();
     assert!(page.contains(&format!("<h1>{title}</h1>")), "{title}");
-    // 26 figures, each an SVG of its own.
-    assert_eq!(page.matches("<svg ").count(), 26);
+    // 27 figures, each an SVG of its own.
+    assert_eq!(page.matches("<svg ").count(), 27);
     for reference in ["src=", "href=", "url(", "@import", "fetch(", "import("] {
         assert!(!page.contains(reference), "{reference}");
     }
