@@ -68,7 +68,7 @@ fn n_functions(own: &SeatMatrices) -> usize {
     own.functions.iter().flatten().map(|range| range.len()).sum()
 }
 
-/// CoupledPlaces that add up, row-major of `n` columns.
+/// Matrices to which rows are added, row-major of `n` columns.
 struct CoupledMatrices {
     n: usize,
     stiffness: Vec<f64>,

@@ -22,6 +22,12 @@ pub struct Grid {
 }
 
 impl Grid {
+    /// Points of a cell.
+    pub fn cell(&self, cell: usize) -> impl Iterator<Item = usize> {
+        let range = self.offsets[cell] as usize..self.offsets[cell + 1] as usize;
+        self.connectivity[range].iter().map(|&point| point as usize)
+    }
+
     /// Joins the bodies in their order.
     pub(crate) fn join(bodies: &[Body]) -> Result<Grid, CheckpointError> {
         let mut grid = Grid {

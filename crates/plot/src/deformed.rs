@@ -108,16 +108,17 @@ fn round_below(value: f64) -> f64 {
 fn balls(grid: &Grid, record: &StepRecord) -> Vec<(DisplacedPoint, f64)> {
     let cells = (0..grid.types.len()).filter(|&i| grid.body[i] == BALLS);
     let ball = |i: usize| {
-        let [p, q] = places(grid, record, grid.connectivity[grid.offsets[i] as usize] as usize);
+        let centre = grid.cell(i).next()?;
+        let [p, q] = places(grid, record, centre);
         let (before, now) = (p[0].hypot(p[1]), q[0].hypot(q[1]));
         let radial = q.map(|x| x / now);
         let moved = DisplacedPoint {
             from: radial.map(|x| before * x),
             by: radial.map(|x| (now - before) * x),
         };
-        (moved, grid.radius[i])
+        Some((moved, grid.radius[i]))
     };
-    cells.map(ball).collect()
+    cells.filter_map(ball).collect()
 }
 
 #[cfg(test)]

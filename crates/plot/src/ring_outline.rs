@@ -63,8 +63,7 @@ pub fn closed(circle: &[DisplacedPoint], magnification: f64) -> Vec<[f64; 2]> {
 /// The circles of a ring: its raceway, and its bore or outside; None of a rigid ring, or without circles of nodes.
 pub fn outline(grid: &Grid, record: &StepRecord, groove: &Groove) -> Option<RingOutline> {
     let cells = (0..grid.types.len()).filter(|&i| grid.body[i] == groove.side as u8);
-    let of_cell = |i: usize| &grid.connectivity[grid.offsets[i] as usize..grid.offsets[i + 1] as usize];
-    let nodes: BTreeSet<usize> = cells.flat_map(of_cell).map(|&node| node as usize).collect();
+    let nodes: BTreeSet<usize> = cells.flat_map(|i| grid.cell(i)).collect();
     let radius = |node: usize| grid.points[node][0].hypot(grid.points[node][1]);
     let away = |node: usize| groove.side.sign() * radius(node);
     let border = nodes

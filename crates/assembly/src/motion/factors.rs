@@ -163,12 +163,8 @@ impl ShaftAlone {
 
     /// Motion of all dofs for a load on them; held ones stay.
     fn moved(&self, load: &[f64], free: &[usize]) -> Vec<f64> {
-        let on_free: Vec<f64> = free.iter().map(|&i| load[i]).collect();
-        let mut motion = vec![0.0; load.len()];
-        for (&i, row) in free.iter().zip(self.inverse.chunks_exact(free.len().max(1))) {
-            motion[i] = dot(row, &on_free);
-        }
-        motion
+        let rows = self.inverse.chunks_exact(free.len().max(1));
+        over_free(load, free, |load| rows.map(|row| dot(row, &load)).collect())
     }
 }
 
@@ -181,8 +177,15 @@ fn factored(n: usize, matrix: &[f64], free: &[usize]) -> Result<DenseLu, Assembl
 
 /// Motion of all dofs for a load on them; held ones stay.
 fn solve(factors: &DenseLu, load: &[f64], free: &[usize]) -> Vec<f64> {
-    let mut found: Vec<f64> = free.iter().map(|&i| load[i]).collect();
-    factors.solve(&mut found, 1);
+    over_free(load, free, |mut load| {
+        factors.solve(&mut load, 1);
+        load
+    })
+}
+
+/// What `solve` makes of the free dofs of a load; the others stay 0.
+fn over_free(load: &[f64], free: &[usize], solve: impl FnOnce(Vec<f64>) -> Vec<f64>) -> Vec<f64> {
+    let found = solve(free.iter().map(|&i| load[i]).collect());
     let mut motion = vec![0.0; load.len()];
     free.iter().zip(found).for_each(|(&i, x)| motion[i] = x);
     motion

@@ -114,20 +114,30 @@ fn over_speed(mut list: Assembly, heavy: &RigidInertia, speed: f64) -> (Vec<f64>
     (found.collect(), linear.of_shaft(&list, 0.0).unwrap())
 }
 
+/// A shaft of a mass, kg, so heavy that all else follows it.
+fn heavy(mass: f64) -> RigidInertia {
+    RigidInertia {
+        mass,
+        first_moment: 0.0,
+        transverse: mass / 375.0,
+        polar: mass / 500.0,
+    }
+}
+
+/// Pairs in one soft housing, on a rigid shaft and on one that is a body.
+fn in_shared_bodies() -> [Assembly; 2] {
+    [
+        tied_pair(Side::Outer, in_one(true, 5e9), [0, 1]),
+        in_and_on(in_one(true, 5e9), on_one(true, HELD_BELOW)),
+    ]
+}
+
 /// Wrong: modes over the speed would not have what bearings do to each other through their bodies, or have it twice. A
 /// heavy shaft swings on the matrix of the shaft; where nothing joins the seats, on bodies of their own.
 #[test]
 fn modes_over_the_speed_have_the_bodies_that_bearings_share() {
-    let heavy = RigidInertia {
-        mass: 3000.0,
-        first_moment: 0.0,
-        transverse: 8.0,
-        polar: 6.0,
-    };
-    for list in [
-        tied_pair(Side::Outer, in_one(true, 5e9), [0, 1]),
-        in_and_on(in_one(true, 5e9), on_one(true, HELD_BELOW)),
-    ] {
+    let heavy = heavy(3000.0);
+    for list in in_shared_bodies() {
         let (found, stiffness) = over_speed(list, &heavy, 0.0);
         let expected = swings(&heavy, &stiffness);
         println!("{:?} {expected:?}", &found[..5]);
@@ -279,17 +289,8 @@ fn the_damping_in_a_body_in_two_parts_is_that_in_two_bodies() {
 /// both matrices, with f + e zeta / 2 pi on K + e C; the modes over the speed have bodies with all oscillators.
 #[test]
 fn the_damping_of_a_shaft_in_one_body_is_that_of_its_modes() {
-    let heavy = RigidInertia {
-        mass: 30000.0,
-        first_moment: 0.0,
-        transverse: 80.0,
-        polar: 60.0,
-    };
-    for list in [
-        tied_pair(Side::Outer, in_one(true, 5e9), [0, 1]),
-        in_and_on(in_one(true, 5e9), on_one(true, HELD_BELOW)),
-    ] {
-        let mut list = list;
+    let heavy = heavy(30000.0);
+    for mut list in in_shared_bodies() {
         list.shaft = ShaftBody::rigid(heavy, [None; 5]);
         let (list, solver, solution, linear) = damped(list);
         let turning = TurningAssembly::new(&list).unwrap();

@@ -84,7 +84,7 @@ pub(super) fn left_out(
     if !is_asked || !is_on_partner || !is_small(first_frequency_bound(body, ring)) {
         return Ok(None);
     }
-    if wobbles && side == Side::BOTH[0] && body.unroundness() >= limit.negligible {
+    if side.choose(wobbles, false) && body.unroundness() >= limit.negligible {
         return Ok(None);
     }
     let settings = StaticSettings {

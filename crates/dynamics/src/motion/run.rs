@@ -72,7 +72,7 @@ impl<'a> Motion<'a> {
         model: &'a Model,
         settings: MotionSettings,
     ) -> Result<Motion<'a>, DynamicsError> {
-        check_supported(model)?;
+        check_kind(model)?;
         check_free(model, &settings)?;
         let build = |side: Side| {
             let ring = model.ring(side);
@@ -330,8 +330,19 @@ fn check_free(model: &Model, settings: &MotionSettings) -> Result<(), DynamicsEr
     Ok(())
 }
 
-/// Refuses what statics knows and motion does not.
+/// Refuses what statics knows and motion does not, before the bodies of the rings are made.
 pub fn check_supported(model: &Model) -> Result<(), DynamicsError> {
+    check_kind(model)?;
+    for side in Side::BOTH {
+        if let (true, Some(ring)) = (model.is_stiffened(side), model.ring(side)) {
+            require_stiffening(side.name(), ring, model.backend)?;
+        }
+    }
+    Ok(())
+}
+
+/// The same but for what the making of these bodies refuses.
+fn check_kind(model: &Model) -> Result<(), DynamicsError> {
     let refuse = |what: &'static str| Err(DynamicsError::NotInMotion { what });
     if model.contact.mode == ContactMode::Facet {
         return refuse("contact.mode = \"facet\"; use \"patch\"");
@@ -341,11 +352,6 @@ pub fn check_supported(model: &Model) -> Result<(), DynamicsError> {
             "real surfaces ([[profiles.*]], contact.edges) beside temperatures that change; keep [effects.temperature] \
              constant",
         );
-    }
-    for side in Side::BOTH {
-        if let (true, Some(ring)) = (model.is_stiffened(side), model.ring(side)) {
-            require_stiffening(side.name(), ring, model.backend)?;
-        }
     }
     Ok(())
 }

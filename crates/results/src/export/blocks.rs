@@ -36,12 +36,11 @@ pub fn parts(grid: &Grid) -> Vec<BodyPart> {
 
 fn part(grid: &Grid, body: u8) -> BodyPart {
     let cells: Vec<usize> = (0..grid.types.len()).filter(|&i| grid.body[i] == body).collect();
-    let of_cell = |i: usize| &grid.connectivity[grid.offsets[i] as usize..grid.offsets[i + 1] as usize];
     let mut numbers: Vec<Option<i64>> = vec![None; grid.points.len()];
     cells
         .iter()
-        .flat_map(|&i| of_cell(i))
-        .for_each(|&point| numbers[point as usize] = Some(0));
+        .flat_map(|&i| grid.cell(i))
+        .for_each(|point| numbers[point] = Some(0));
     let points: Vec<usize> = (0..numbers.len()).filter(|&i| numbers[i].is_some()).collect();
     points
         .iter()
@@ -49,7 +48,7 @@ fn part(grid: &Grid, body: u8) -> BodyPart {
         .for_each(|(&i, new)| numbers[i] = Some(new));
     let (mut connectivity, mut offsets) = (Vec::new(), vec![0]);
     for &i in &cells {
-        connectivity.extend(of_cell(i).iter().filter_map(|&point| numbers[point as usize]));
+        connectivity.extend(grid.cell(i).filter_map(|point| numbers[point]));
         offsets.push(connectivity.len() as i64);
     }
     BodyPart {

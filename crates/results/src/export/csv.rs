@@ -58,10 +58,7 @@ fn unit(name: &str) -> &'static str {
 fn body_of_points(grid: &Grid) -> Vec<u8> {
     let mut bodies = vec![0; grid.points.len()];
     for (cell, &body) in grid.body.iter().enumerate() {
-        let points = grid.offsets[cell] as usize..grid.offsets[cell + 1] as usize;
-        grid.connectivity[points]
-            .iter()
-            .for_each(|&point| bodies[point as usize] = body);
+        grid.cell(cell).for_each(|point| bodies[point] = body);
     }
     bodies
 }

@@ -34,11 +34,10 @@ pub fn write(file: &mut dyn Write, grid: &Grid, stress: &IntegrationPointStress)
 
 /// Place of a point of a cell in the mesh, m, from the values of the shape functions.
 fn place(grid: &Grid, cell: usize, shape: &[f64]) -> [f64; 3] {
-    let nodes = grid.offsets[cell] as usize..grid.offsets[cell + 1] as usize;
     let mut place = [0.0; 3];
-    for (&node, value) in grid.connectivity[nodes].iter().zip(shape) {
+    for (node, value) in grid.cell(cell).zip(shape) {
         for i in 0..3 {
-            place[i] += value * grid.points[node as usize][i];
+            place[i] += value * grid.points[node][i];
         }
     }
     place

@@ -136,12 +136,7 @@ impl CyclicRing {
     /// # Panics
     /// When a node does not exist.
     pub fn section_nodes(&self, nodes: impl IntoIterator<Item = usize>) -> Vec<usize> {
-        let shared = &self.shared;
-        let places = invert(&shared.place, shared.place.len()).expect("every section node has a place");
-        let mut section: Vec<usize> = nodes
-            .into_iter()
-            .map(|node| places[shared.sites[node] % self.n_section_nodes()])
-            .collect();
+        let mut section: Vec<usize> = nodes.into_iter().map(self.section_node()).collect();
         section.sort_unstable();
         section.dedup();
         section
@@ -149,16 +144,18 @@ impl CyclicRing {
 
     /// The caller's nodes that belong to the section nodes `section`, ascending.
     pub fn nodes_of(&self, section: &[usize]) -> Vec<usize> {
-        let shared = &self.shared;
-        let places = invert(&shared.place, shared.place.len()).expect("every section node has a place");
         let mut is_chosen = vec![false; self.n_section_nodes()];
         section.iter().for_each(|&node| is_chosen[node] = true);
-        let node_of = |site: &usize| places[site % self.n_section_nodes()];
-        let nodes = shared.sites.iter().map(node_of).enumerate();
-        nodes
-            .filter(|(_, of)| is_chosen[*of])
-            .map(|(node, _)| node)
-            .collect()
+        let section_node = self.section_node();
+        let nodes = 0..self.shared.sites.len();
+        nodes.filter(|&node| is_chosen[section_node(node)]).collect()
+    }
+
+    /// The section node to which each of the caller's nodes belongs.
+    fn section_node(&self) -> impl Fn(usize) -> usize {
+        let shared = &self.shared;
+        let places = invert(&shared.place, shared.place.len()).expect("every section node has a place");
+        move |node| places[shared.sites[node] % self.n_section_nodes()]
     }
 
     /// The section nodes to which the caller's nodes `nodes` belong, and the section nodes `section_nodes`.
