@@ -1,8 +1,8 @@
 //! Both rings across the axis, in the plane of their groove centres, undeformed and with magnified displacement, and
 //! the balls ([`super::ring_outline`]).
 //!
-//! Balls are shown at their azimuths; how far a centre has moved radially is magnified too. Rings without circles of
-//! nodes, of free meshes, have no such figure.
+//! Balls are shown at their azimuths, as far out as they are: they may move many times as far as rings deform, so that
+//! magnified they would leave them. Rings without circles of nodes, of free meshes, have no such figure.
 
 use std::f64::consts::TAU;
 
@@ -49,7 +49,7 @@ pub fn figures(results: &Results, step: Option<u64>) -> anyhow::Result<Vec<(Stri
 }
 
 /// The picture of the rings; none if there is none, or nothing has moved.
-fn draw(rings: &[Option<RingOutline>], balls: &[(DisplacedPoint, f64)], at: &str) -> Option<Figure> {
+fn draw(rings: &[Option<RingOutline>], balls: &[Disc], at: &str) -> Option<Figure> {
     let of_rings = || {
         rings
             .iter()
@@ -64,7 +64,7 @@ fn draw(rings: &[Option<RingOutline>], balls: &[(DisplacedPoint, f64)], at: &str
     let magnification = round_below(SHOWN * outside / largest).max(1.0);
     let title = format!("Deformed rings, displacements {magnification} times: {at}");
     let note = format!(
-        "In the plane of the groove centres; the mean turn of each ring is taken out. Largest displacement {:.3} µm",
+        "In the plane of the groove centres, without turns of rings; balls not magnified. Largest {:.3} µm",
         MICROMETRE.factor * largest
     );
     let mut figure = Figure::new(title, MILLIMETRE.axis("x"), MILLIMETRE.axis("y"))
@@ -80,12 +80,10 @@ fn draw(rings: &[Option<RingOutline>], balls: &[(DisplacedPoint, f64)], at: &str
         }
     }
     let mut round = Vec::new();
-    for (centre, radius) in balls {
-        let [x, y] = centre.shown(magnification);
+    for Disc { x, y, radius } in balls {
         let side = |i: usize| {
             let (sin, cos) = (TAU * i as f64 / SIDES as f64).sin_cos();
-            let radius = MILLIMETRE.factor * radius;
-            [x + radius * cos, y + radius * sin]
+            [x + radius * cos, y + radius * sin].map(|x| MILLIMETRE.factor * x)
         };
         round.extend((0..=SIDES).map(side));
         // The line ends between two balls.
@@ -104,19 +102,23 @@ fn round_below(value: f64) -> f64 {
         .unwrap_or(power)
 }
 
-/// The balls, with what their centres have moved radially, and their radii, m.
-fn balls(grid: &Grid, record: &StepRecord) -> Vec<(DisplacedPoint, f64)> {
+/// A ball across the axis, m.
+struct Disc {
+    x: f64,
+    y: f64,
+    radius: f64,
+}
+
+/// The balls across the axis.
+fn balls(grid: &Grid, record: &StepRecord) -> Vec<Disc> {
     let cells = (0..grid.types.len()).filter(|&i| grid.body[i] == BALLS);
     let ball = |i: usize| {
-        let centre = grid.cell(i).next()?;
-        let [p, q] = places(grid, record, centre);
-        let (before, now) = (p[0].hypot(p[1]), q[0].hypot(q[1]));
-        let radial = q.map(|x| x / now);
-        let moved = DisplacedPoint {
-            from: radial.map(|x| before * x),
-            by: radial.map(|x| (now - before) * x),
-        };
-        Some((moved, grid.radius[i]))
+        let [_, [x, y]] = places(grid, record, grid.cell(i).next()?);
+        Some(Disc {
+            x,
+            y,
+            radius: grid.radius[i],
+        })
     };
     cells.filter_map(ball).collect()
 }
