@@ -10,6 +10,7 @@
 //! (1969) 275).
 
 use contact::Side;
+use ring::{RingError, RingModel};
 use timer::SharedLaps;
 
 use crate::bearing::{BearingParts, ContactList, SeatStep};
@@ -315,6 +316,15 @@ pub fn largest_change(old: &[[f64; 2]], new: &[[f64; 2]], scale: f64) -> (f64, u
         })
 }
 
+/// Weights of a ring's nodes under an acceleration in its frame, m/s2: N, `[n_nodes][3]` flat.
+fn nodal_weights((ring, side): (&RingModel, Side), g: [f64; 3]) -> Result<Vec<f64>, DynamicsError> {
+    let masses = ring.node_masses().map_err(|source| RingError::Fem {
+        side: side.name(),
+        source,
+    })?;
+    Ok(masses.masses.iter().flat_map(|m| g.map(|a| m * a)).collect())
+}
+
 /// Loads of which those on the nodes of flexible rings are given in the rings' own frames, and the shaft carries
 /// the resultant on the inner ring where the turned nodes stand. `inertia` are loads in these frames, inner first,
 /// N, `[n_nodes][3]` flat; they have no force along z. Collective.
@@ -327,10 +337,14 @@ fn in_frames(
     for (side, inertia) in Side::BOTH.into_iter().zip(inertia) {
         let in_space = loads.rings[side.index()].take();
         let turned = in_space.map(|load| turn_nodal(&load, -pose.frame_angle(side)));
-        loads.rings[side.index()] = match (turned, inertia) {
-            (Some(load), Some(inertia)) => Some(load.iter().zip(&inertia).map(|(a, b)| a + b).collect()),
-            (load, inertia) => load.or(inertia),
-        };
+        let weight = loads.weights[side.index()].zip(model.ring(side));
+        let weight = weight
+            .map(|(weight, ring)| nodal_weights((ring, side), weight.seen_from(pose.frame_angle(side))));
+        let sum = |a: Vec<f64>, b: Vec<f64>| a.iter().zip(&b).map(|(a, b)| a + b).collect();
+        loads.rings[side.index()] = [turned, weight.transpose()?, inertia]
+            .into_iter()
+            .flatten()
+            .reduce(sum);
     }
     let inner = model.ring(Side::Inner).zip(loads.rings[0].as_ref());
     if let Some((ring, load)) = inner {

@@ -186,6 +186,11 @@ pub trait Effect: Send + Sync {
     /// Adds its loads at an instant.
     fn add_loads(&self, model: &Model, now: &Now, loads: &mut Loads) -> Result<(), DynamicsError>;
 
+    /// Whether it gives flexible rings weight ([`Loads::add_ring_weight`]).
+    fn weighs_rings(&self) -> bool {
+        false
+    }
+
     /// Whether it is the inertia of a ring's turning frame.
     fn turns_frame(&self, _side: Side) -> bool {
         false

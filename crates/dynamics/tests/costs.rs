@@ -54,13 +54,18 @@ fn a_scene_without_an_effect_pays_nothing() {
         "no load of any body"
     );
     assert!(loads.rings.iter().all(Option::is_none), "no nodal vector");
+    assert!(loads.weights.iter().all(Option::is_none), "no weight");
 
     let heavy = flexible(vec![Box::new(
         Gravity::new([0.0, -9.81, 0.0], Schedule::Constant, &bare.rings).unwrap(),
     )]);
     assert_eq!(counted(&heavy), rings, "a load needs no dof and no matrix");
     let loads = heavy.loads(&Now::default()).unwrap();
-    assert!(loads.rings.iter().all(Option::is_some));
+    assert!(loads.weights.iter().all(Option::is_some));
+    assert!(
+        loads.rings.iter().all(Option::is_none),
+        "a weight is no nodal vector"
+    );
 }
 
 /// Wrong: motion would assemble matrices of effects that are off, or an effect that reuses K and M would be thought to.
@@ -103,8 +108,14 @@ fn gravity_on_nodal_masses_is_the_body_load() {
         let weight = g.map(|a| ring.material.density * a);
         let expected = fem::body_load(&ring.mesh, |_| weight).unwrap();
         let largest = expected.iter().fold(0.0f64, |m, x| m.max(x.abs()));
-        let found = loads.rings[side.index()].as_ref().unwrap();
-        for (a, b) in found.iter().zip(&expected) {
+        let weight = loads.weights[side.index()].unwrap();
+        let masses = ring.node_masses().unwrap();
+        assert_eq!(weight.mass, masses.total);
+        let found = masses
+            .masses
+            .iter()
+            .flat_map(|m| weight.acceleration.map(|a| m * a));
+        for (a, b) in found.zip(&expected) {
             assert!((a - b).abs() < 1e-14 * largest, "{a} {b}");
         }
     }

@@ -2,8 +2,9 @@
 //!
 //! Balls have it in their meridian planes; the cage carries the rest. The shaft's acts at the load point.
 //!
-//! The weight of a ring is its nodal masses, the integrals of rho N_a over the ring, times the acceleration: they are
-//! integrated once per ring, so an instant costs one pass over the nodes. Memory: 8 bytes per node.
+//! The weight of a ring is its nodal masses, the integrals of rho N_a over the ring, times the acceleration. The masses
+//! are integrated once per ring, 8 bytes per node; a motion has their load of unit accelerations along x, y and z in
+//! the ring's coordinates ([`crate::motion`]), 24 bytes per dof, so that an instant turns three numbers.
 //!
 //! Rule of thumb: weight of shaft, inner ring and balls over the load.
 
@@ -13,7 +14,7 @@ use contact::Side;
 use input::{ACCELERATION, Problems, Quantity, RawSchedule, Schedule, check_schedule, schedule_of};
 use serde::Deserialize;
 
-use super::loads::{Loads, Now};
+use super::loads::{Loads, Now, RingWeight};
 use super::rules::{Case, judge, percent};
 use super::table::{self, About, Context, Setting, SpeedRole, Trial};
 use crate::error::DynamicsError;
@@ -160,6 +161,10 @@ impl Effect for Gravity {
         "gravity"
     }
 
+    fn weighs_rings(&self) -> bool {
+        true
+    }
+
     fn acceleration(&self, now: &Now) -> [f64; 3] {
         let factor = now.factor(&self.schedule);
         self.acceleration.map(|a| factor * a)
@@ -184,18 +189,17 @@ impl Effect for Gravity {
             let (Some(ring), Some(of_ring)) = (model.ring(side), &self.node_masses[side.index()]) else {
                 continue;
             };
-            let NodeMasses {
-                masses,
-                total,
-                moment,
-            } = &**of_ring;
-            let weights = masses.iter().flat_map(|m| g.map(|a| m * a));
+            let NodeMasses { total, moment, .. } = &**of_ring;
             // Moment of all weights about the shaft's origin: that of the mass moment.
             let [x, y, z] = [moment[0], moment[1], moment[2] - total * ring.groove.centre_z];
             let about_x = y * g[2] - z * g[1];
             let about_y = z * g[0] - x * g[2];
             let resultant = [total * g[0], total * g[1], total * g[2], about_x, about_y];
-            loads.add_ring_load(side, weights.collect(), resultant);
+            let weight = RingWeight {
+                mass: *total,
+                acceleration: g,
+            };
+            loads.add_ring_weight(side, weight, resultant);
         }
         Ok(())
     }

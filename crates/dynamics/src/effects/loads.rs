@@ -28,11 +28,31 @@ pub struct Loads {
     pub follows_angles: bool,
     /// Body loads on the nodes of a flexible ring, N, `[n_nodes][3]` flat; None: no such load.
     pub rings: [Option<Vec<f64>>; 2],
+    /// What the nodes of a flexible ring weigh, besides those; None: nothing.
+    pub weights: [Option<RingWeight>; 2],
     /// Force on the ring at each contact [radial, axial] besides the normal one, N, by site (2 ball + side), acting
     /// at the groove centre; the ball gets its negative. Empty: no effect adds any.
     pub contacts: Vec<[f64; 2]>,
     /// Turning of the rings' frames, inner first, where their inertia is called for.
     pub frames: [Option<FrameTurn>; 2],
+}
+
+/// Weight of the nodes of a flexible ring: their masses times one acceleration.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RingWeight {
+    /// Mass of the ring, kg.
+    pub mass: f64,
+    /// Acceleration, m/s2, `[3]` in x, y, z in space.
+    pub acceleration: [f64; 3],
+}
+
+impl RingWeight {
+    /// The acceleration seen from a frame that is turned by an angle, rad, m/s2.
+    pub fn seen_from(&self, angle: f64) -> [f64; 3] {
+        let (sin, cos) = angle.sin_cos();
+        let [x, y, z] = self.acceleration;
+        [cos * x + sin * y, cos * y - sin * x, z]
+    }
 }
 
 impl Loads {
@@ -48,6 +68,7 @@ impl Loads {
             follows_angles: false,
             balls: vec![[0.0; 2]; n_balls],
             rings: [None, None],
+            weights: [None, None],
             contacts: Vec::new(),
             frames: [None, None],
         }
@@ -74,15 +95,30 @@ impl Loads {
     /// Adds nodal body loads (N) to a flexible ring; shaft and housing carry the `resultant`: force x, y, z, N,
     /// and moment about x and y, N m, about the shaft's origin.
     pub fn add_ring_load(&mut self, side: Side, load: Vec<f64>, resultant: [f64; 5]) {
+        self.add_carried(side, resultant);
+        match &mut self.rings[side.index()] {
+            Some(sum) => sum.iter_mut().zip(&load).for_each(|(s, l)| *s += l),
+            none => *none = Some(load),
+        }
+    }
+
+    /// Adds the weight of a flexible ring; shaft and housing carry the `resultant` as of [`Loads::add_ring_load`].
+    pub fn add_ring_weight(&mut self, side: Side, weight: RingWeight, resultant: [f64; 5]) {
+        self.add_carried(side, resultant);
+        let sum = self.weights[side.index()].get_or_insert(RingWeight {
+            acceleration: [0.0; 3],
+            ..weight
+        });
+        (0..3).for_each(|i| sum.acceleration[i] += weight.acceleration[i]);
+    }
+
+    /// What shaft and housing carry of loads on a flexible ring.
+    fn add_carried(&mut self, side: Side, resultant: [f64; 5]) {
         if side == Side::Inner {
             let sum = self.ring_on_shaft.iter_mut().zip(resultant);
             sum.for_each(|(s, f)| *s += f);
         } else {
             self.ring_on_seat += resultant[2];
-        }
-        match &mut self.rings[side.index()] {
-            Some(sum) => sum.iter_mut().zip(&load).for_each(|(s, l)| *s += l),
-            none => *none = Some(load),
         }
     }
 }

@@ -32,7 +32,7 @@ pub use frame_rotation::{FrameRotation, static_inertia};
 pub use gravity::Gravity;
 pub use gyroscopic_moment::{GyroscopicMoment, MomentShares};
 pub(crate) use loads::resultant;
-pub use loads::{AtEquilibrium, FrameTurn, Loads, Now};
+pub use loads::{AtEquilibrium, FrameTurn, Loads, Now, RingWeight};
 
 pub use crate::model::Effect;
 pub use moment::Moment;

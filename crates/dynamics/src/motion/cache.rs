@@ -95,16 +95,20 @@ impl Motion<'_> {
     /// are turned into the frame of the ring.
     pub(super) fn known_load(&self, side: Side, expected: &ExpectedLoads) -> KnownLoad {
         let loads = &expected.loads;
-        let back = -self.frame_angle(side, self.weighted_time(expected.span));
+        let angle = self.frame_angle(side, self.weighted_time(expected.span));
         let moving = self.rings[side.index()].as_ref();
-        let load = moving.zip(loads.rings[side.index()].as_ref());
-        let mut load = load.map(|(moving, load)| moving.body.load(&turn_nodal(load, back)));
-        if let Some(inertia) = self.undeformed_load(side, loads) {
-            load = Some(match load {
-                Some(load) => load.iter().zip(&inertia).map(|(a, b)| a + b).collect(),
-                None => inertia,
-            });
-        }
+        let nodal = moving.zip(loads.rings[side.index()].as_ref());
+        let nodal = nodal.map(|(moving, load)| moving.body.load(&turn_nodal(load, -angle)));
+        let weight = moving
+            .and_then(|moving| moving.weights.as_deref())
+            .zip(loads.weights[side.index()]);
+        let weight = weight.map(|(unit, weight)| unit.load(weight.seen_from(angle)));
+        let known = [nodal, weight, self.undeformed_load(side, loads)];
+        let sum = |mut a: Vec<f64>, b: Vec<f64>| {
+            a.iter_mut().zip(&b).for_each(|(a, b)| *a += b);
+            a
+        };
+        let load = known.into_iter().flatten().reduce(sum);
         KnownLoad {
             load,
             turn: self.elastic_turn(side, loads),

@@ -25,6 +25,7 @@ use ring::first_frequency::{first_frequency, first_frequency_bound};
 use ring::statics::StaticSettings;
 use ring::{ElasticBody, Frame, FrameTurn, Hold, RingModel};
 
+use super::mass_load::mass_load;
 use crate::bearing::partner;
 use crate::error::DynamicsError;
 use crate::model::{InertiaLimit, Model};
@@ -103,9 +104,8 @@ pub(super) fn left_out(
 
 /// Loads of unit speed and of unit acceleration on the undeformed ring, vectors of the body. Collective.
 fn undeformed(body: &dyn ElasticBody) -> [Vec<f64>; 2] {
-    let load = |field: fn([f64; 3]) -> [f64; 3]| {
-        let field = body.held().places.field(field);
-        body.load(&body.matrices().nodal_mass_product(&field))
-    };
-    [load(|[x, y, _]| [x, y, 0.0]), load(|[x, y, _]| [y, -x, 0.0])]
+    [
+        mass_load(body, |[x, y, _]| [x, y, 0.0]),
+        mass_load(body, |[x, y, _]| [y, -x, 0.0]),
+    ]
 }

@@ -27,6 +27,7 @@ mod free_state;
 pub mod held;
 pub mod ledger;
 mod limits;
+mod mass_load;
 mod part;
 mod place;
 mod ports;

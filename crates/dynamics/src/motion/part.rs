@@ -221,7 +221,10 @@ impl Motion<'_> {
         let rings = Side::BOTH.into_iter().flat_map(|side| {
             let load = loads.rings[side.index()].as_deref().unwrap_or_default();
             let add = |sum: [f64; 3], f: &[f64; 3]| [0, 1, 2].map(|i| sum[i] + f[i]);
-            load.as_chunks().0.iter().fold([0.0; 3], add)
+            let sum = load.as_chunks().0.iter().fold([0.0; 3], add);
+            let weight =
+                loads.weights[side.index()].map_or([0.0; 3], |of| of.acceleration.map(|a| of.mass * a));
+            add(sum, &weight)
         });
         let seat = self.model.seat().zip(state.seat);
         let seat = seat.map(|(seat, [z, ..])| [loads.seat, seat.force + seat.stiffness * z]);

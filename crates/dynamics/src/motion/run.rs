@@ -19,6 +19,7 @@ use ring::{
 };
 
 use super::elastic_inertia::{LeftOut, left_out};
+use super::mass_load::UnitWeights;
 use super::state::MotionSettings;
 use crate::bearing::partner;
 use crate::costs;
@@ -40,6 +41,8 @@ pub struct MovingRing {
     settings: BodySettings,
     /// Inertia of its elastic part in its turning frame, where that is nothing.
     pub(super) left_out: Option<LeftOut>,
+    /// What it weighs, where an effect gives it weight.
+    pub(super) weights: Option<Arc<UnitWeights>>,
 }
 
 /// A model ready to move.
@@ -291,13 +294,19 @@ fn moving_ring(
         }
         None => (model.frame(side), turning),
     };
-    let raceway = rings
+    let mut alike = rings.filter(|(_, _, like)| like.is_like(ring));
+    let raceway = alike
         .clone()
-        .find(|(other, _, like)| other.model.contact.mode == model.contact.mode && like.is_like(ring))
+        .find(|(other, ..)| other.model.contact.mode == model.contact.mode)
         .map(|(_, moving, _)| moving.raceway.clone());
+    let weights = model.effects.iter().any(|effect| effect.weighs_rings()).then(|| {
+        let known = alike.find_map(|(_, moving, _)| moving.weights.clone());
+        known.unwrap_or_else(|| Arc::new(UnitWeights::of(&**body)))
+    });
     Ok(MovingRing {
-        body,
         raceway: raceway.unwrap_or_else(|| Arc::new(Raceway::new(ring, model.contact.mode))),
+        weights,
+        body,
         settings: own(frame),
         left_out,
     })
