@@ -1,10 +1,14 @@
 //! Sweeps through the whole program: a table with a column of the swept value, and the same numbers as single runs.
 
+use std::io::{BufRead, BufReader};
+use std::process::Stdio;
 use std::sync::OnceLock;
 
 use checkpoint::committed_steps;
 use serde_json::Value;
 
+use crate::interruption::{outcome_of, signal};
+use crate::several::pair;
 use crate::util::lockstep::{assert_same_run, small_motion};
 use crate::util::tables::{Table, keys, number, summary};
 use crate::util::{Dir, Files, RIGID, SCENE, assert_close, assert_within, with_line};
@@ -322,4 +326,64 @@ fn points_solved_at_the_same_time_are_those_solved_one_by_one() {
     }
     assert_same_run(&dir, "1", "2");
     assert_same_run(&dir, "1", "4");
+}
+
+/// Wrong: a job whose sweep is too long would be killed by its batch system in the middle of a point, and nobody would
+/// know which points are still to be computed.
+#[test]
+fn a_sweep_stops_at_a_signal_and_names_the_points_that_are_left() {
+    const POINTS: usize = 3000;
+    let dir = Dir::with_meshes();
+    let values: Vec<String> = (0..POINTS).map(|i| format!("\"{i} N\"")).collect();
+    let sweep = format!(
+        "[sweep]\nkey = \"effects.radial_force.value\"\nvalues = [{}]",
+        values.join(", ")
+    );
+    dir.write("scene.toml", with_line("[static]", "[static]", &sweep));
+    let arguments = [&["run", "scene.toml", "--out", "out"], &RIGID[..]].concat();
+    let mut command = dir.shell("true", &arguments);
+    let mut child = command.stderr(Stdio::piped()).spawn().unwrap();
+    let mut messages = BufReader::new(child.stderr.take().unwrap());
+    // The folder is there with the first point.
+    while !dir.path("out").exists() {
+        assert!(messages.read_line(&mut String::new()).unwrap() > 0, "it ended");
+    }
+    signal(&child, "TERM");
+    let outcome = outcome_of(child, messages);
+    assert_eq!(outcome.code, Some(75), "{}", outcome.stderr);
+    let steps = committed_steps(&dir.path("out")).unwrap();
+    let solved = steps.len();
+    assert!(0 < solved && solved < POINTS, "{solved}");
+    assert_eq!(steps, (0..solved as u64).collect::<Vec<_>>());
+    assert_eq!(Table::read(&dir, "out/shaft.csv").rows.len(), solved);
+    let said = format!(
+        "stopped: SIGTERM received; the first {solved} of the {POINTS} points of the sweep are in out; for the others: \
+         raceway run scene.toml --points {solved}-{}, into another folder",
+        POINTS - 1
+    );
+    assert!(outcome.stderr.contains(&said), "{}", outcome.stderr);
+    assert_eq!(
+        summary(&dir, "out")["status"]
+            .as_str()
+            .map(|s| s.starts_with("stopped")),
+        Some(true)
+    );
+}
+
+/// Wrong: a sweep would not look at its wall time, or leave a folder without a point.
+#[test]
+fn a_sweep_without_time_solves_nothing_and_says_so() {
+    let dir = Dir::with_meshes();
+    dir.write("scene.toml", with_line("[static]", "[static]", SWEEP));
+    let run = ["run", "scene.toml", "--out", "out", "--wall-time", "00:00:00"];
+    let outcome = dir.raceway(&[&run, &RIGID[..]].concat());
+    assert_eq!(outcome.code, Some(75), "{}", outcome.stderr);
+    let said = "--wall-time 00:00:00 is used up but for what it takes to stop; none of the 3 points of the sweep has \
+                been solved";
+    assert!(outcome.stderr.contains(said), "{}", outcome.stderr);
+    assert!(!dir.path("out").exists());
+    let list = pair("[sweep]\nkey = \"pairing.offset\"\nvalues = [\"10 um\", \"20 um\", \"30 um\"]");
+    let outcome = list.raceway(&["run", "pair.toml", "--out", "out", "--wall-time", "00:00:00"]);
+    assert_eq!(outcome.code, Some(75), "{}", outcome.stderr);
+    assert!(outcome.stderr.contains(said), "{}", outcome.stderr);
 }

@@ -79,6 +79,14 @@ pub trait OverInstants {
     /// Writes the step files of the known instant, or hands them over to be written; ranks recover its stress first,
     /// then rank 0 alone may fail.
     fn append_files(&mut self, restart: RestartState) -> Result<(), Failure>;
+    /// Stops before the instant that follows the known one: saves what is to go on from, and says how.
+    fn stop(&mut self, reason: &str) -> Failure
+    where
+        Self: Sized,
+    {
+        stopped(self, reason)
+    }
+
     /// Whether a step file has the restart state.
     fn restart_at(&self, _n: u64) -> RestartState {
         RestartState::Stored
@@ -97,9 +105,9 @@ pub fn run(
         let written = *course.written();
         // A step whose file is there without its state is not one to stop at: the next one will be.
         if let Some(reason) = &reason
-            && (written.file != Some(n - 1) || written.state == Some(n - 1))
+            && (written.file != n.checked_sub(1) || written.state == n.checked_sub(1))
         {
-            return Err(stopped(course, reason));
+            return Err(course.stop(reason));
         }
         if let Some(text) = course.stage(n, first) {
             progress.stage(&text);
@@ -166,6 +174,24 @@ fn stopped(course: &mut impl OverInstants, reason: &str) -> Failure {
         course.time(n),
         course.dir().display()
     ))
+}
+
+/// Says what there is of a sweep that stops, with so many points solved from its point `first` to `last`; `others` is
+/// how to have the others. Points are written as they are solved.
+pub fn stopped_sweep(
+    reason: &str,
+    (first, solved, last): (u64, u64, u64),
+    dir: &Path,
+    others: &str,
+) -> Failure {
+    let total = last + 1 - first;
+    Failure::Stopped(match solved {
+        0 => anyhow!("{reason}; none of the {total} points of the sweep has been solved"),
+        _ => anyhow!(
+            "{reason}; the first {solved} of the {total} points of the sweep are in {}; {others}",
+            dir.display()
+        ),
+    })
 }
 
 /// Saves the last good state after the instant that follows it has failed, and says where it is; `what` names it.

@@ -12,7 +12,7 @@ use scene::{Analysis, Scene};
 /// Limits of a run.
 #[derive(Clone, Debug, Default, Args)]
 pub struct Limits {
-    /// Stops at a step boundary before this time is used up, with a step to resume from and exit code 75.
+    /// Stops between two steps, or points of a sweep, before this time is used up, with exit code 75 and how to go on.
     #[arg(long, value_name = "HH:MM:SS", value_parser = parse_wall_time)]
     pub wall_time: Option<Duration>,
     /// Starts even when the forecast of the output does not fit the disk.

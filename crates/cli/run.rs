@@ -15,6 +15,7 @@ use results::memory::Forecasts;
 use results::motion_fields::RestartState;
 use results::shown::Shown;
 use results::snapshot::Snapshot;
+use results::stop::Stop;
 use results::summary::{Costs, Findings, Summary};
 use results::survey::{Survey, build_surveyed};
 use results::{console, fields, folder, seat};
@@ -104,6 +105,7 @@ fn run_points(
         size: points_per_start(&model),
         last: points.len() as u64 - 1,
     };
+    let mut stop = agree(Stop::of_points(points.len(), start, limits.wall_time).map_err(Failure::from))?;
     let (sweep, ended) = rayon::in_place_scope(|scope| {
         let mut sweep = LoadCases {
             scene,
@@ -118,7 +120,7 @@ fn run_points(
             written: WrittenSteps::default(),
             dir,
         };
-        let ended = instants::run(&mut sweep, first, None, &mut progress);
+        let ended = instants::run(&mut sweep, first, stop.as_mut(), &mut progress);
         (sweep.solved(), ended)
     });
     progress.finish();
@@ -239,6 +241,15 @@ impl OverInstants for LoadCases<'_, '_, '_> {
         Some(stage_text(self.scene, self.point(n).0))
     }
 
+    fn stop(&mut self, reason: &str) -> Failure {
+        let (solved, last) = (self.solutions.len() as u64, self.due().last);
+        let next = self.first + solved;
+        let scene = self.scene.path.display();
+        let others =
+            format!("for the others: raceway run {scene} --points {next}-{last}, into another folder");
+        instants::stopped_sweep(reason, (self.first, solved, last), self.dir, &others)
+    }
+
     fn advance(&mut self, n: u64, _progress: &mut Progress) -> Result<(), Failure> {
         let (value, point) = &self.points[(n - self.first) as usize];
         let done = self.solutions.len();
@@ -305,7 +316,7 @@ fn run_list(
         Analysis::Dynamic(dynamic) => several_motion::run(list, dynamic, &dir, limits, start)?,
         Analysis::QuasiStatic(settings) => several_quasi_static::run(list, settings, &dir, limits, start)?,
         Analysis::Modes(wanted) => several_modes::run(list, wanted, &dir, limits, start)?,
-        Analysis::Static | Analysis::Sweep(_) => several_rest::run(list, &dir, start)?,
+        Analysis::Static | Analysis::Sweep(_) => several_rest::run(list, &dir, limits, start)?,
     }
     Ok(dir)
 }

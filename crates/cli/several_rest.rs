@@ -13,11 +13,13 @@ use results::seat;
 use results::several::{ListState, SeveralFindings, SeveralSummary, SeveralTables};
 use results::several_print::{print_solution, print_sweep_head, print_sweep_point};
 use results::shown::Shown;
+use results::stop::Stop;
 use results::summary::{Findings, READ, TOTAL};
 use results::survey::Survey;
 use scene::{KeptFields, SeveralScene, assembly_with_rings};
 
 use crate::instants::{self, Due, OverInstants, WrittenSteps};
+use crate::options::Limits;
 use crate::progress::Progress;
 use crate::several::{
     SeveralPoint, at_point, column, make_folder, placed, points, require_same_list, say_types, snapshot,
@@ -27,7 +29,7 @@ use crate::several_files::close_bearing;
 use crate::several_read::{ReadList, read_list, require_memory_of_all};
 
 /// Runs a scene at rest; its results go into a folder.
-pub fn run(scene: &SeveralScene, dir: &Path, start: Instant) -> Result<(), Failure> {
+pub fn run(scene: &SeveralScene, dir: &Path, limits: &Limits, start: Instant) -> Result<(), Failure> {
     require_same_list(scene)?;
     let points = agree(points(scene))?;
     let mut progress = Progress::new(points.len() as u64);
@@ -57,7 +59,8 @@ pub fn run(scene: &SeveralScene, dir: &Path, start: Instant) -> Result<(), Failu
         written: WrittenSteps::default(),
         dir,
     };
-    let ended = instants::run(&mut cases, 0, None, &mut progress);
+    let mut stop = agree(Stop::of_points(points.len(), start, limits.wall_time).map_err(Failure::from))?;
+    let ended = instants::run(&mut cases, 0, stop.as_mut(), &mut progress);
     progress.finish();
     cases.conclude(ended, (read, start))
 }
@@ -163,6 +166,11 @@ impl OverInstants for ListCases<'_> {
 
     fn stage(&self, n: u64, _first: u64) -> Option<String> {
         Some(stage_text(column(self.scene), self.points[n as usize].0))
+    }
+
+    fn stop(&mut self, reason: &str) -> Failure {
+        let others = "for the others, run a sweep of their values into another folder";
+        instants::stopped_sweep(reason, (0, self.solved, self.due().last), self.dir, others)
     }
 
     fn advance(&mut self, n: u64, _progress: &mut Progress) -> Result<(), Failure> {

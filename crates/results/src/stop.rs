@@ -66,6 +66,11 @@ impl Stop {
         })
     }
 
+    /// Listens where there are several points to stop between; a single one ends at once at a signal.
+    pub fn of_points(n: usize, start: Instant, wall_time: Option<Duration>) -> anyhow::Result<Option<Stop>> {
+        (n > 1).then(|| Stop::listen(start, wall_time)).transpose()
+    }
+
     /// Called by all ranks between steps: why the run has to stop now, if it has to. What one rank knows stops all.
     pub fn reason(&mut self) -> Option<String> {
         let own = self.own_reason();
