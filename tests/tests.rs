@@ -28,6 +28,7 @@ mod interruption;
 mod life;
 mod limits;
 mod memory;
+mod memory_of_lists;
 mod modes;
 mod motion;
 mod moved_results;
