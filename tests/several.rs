@@ -426,7 +426,6 @@ fn a_pair_moves_and_a_resumed_one_has_the_same_bits() {
                   whole/front";
     for command in [
         &["cycles", "whole"][..],
-        &["export", "whole", "--to", "csv"],
         &["pack", "whole"],
         &["spectrum", "whole", "--probe", "x_m", "--upto", "1000"],
         &["spall-length", "whole", "--ring", "outer"],
