@@ -15,7 +15,7 @@ const SECTIONS: [(&str, f64, f64); 2] = [
 ];
 
 /// A folder with the scene of the tests and both rings in `n_sectors` sectors.
-fn rings(n_sectors: usize, kind: ElementKind) -> Dir {
+pub fn rings(n_sectors: usize, kind: ElementKind) -> Dir {
     let dir = Dir::with_scene(SCENE);
     for ((path, centre_r, radius), name) in SECTIONS.into_iter().zip(["inner.msh", "outer.msh"]) {
         let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join(path);

@@ -336,8 +336,7 @@ fn check_stiffness_and_campbell_take_a_list() {
         "{modes}"
     );
     for arguments in [
-        &["stiffness", "pair.toml", "--out", "k2", "--ripple", "4"][..],
-        &["run", "pair.toml", "--out", "r2", "--points", "0"],
+        &["run", "pair.toml", "--out", "r2", "--points", "0"][..],
         &["life", "pair.toml"],
     ] {
         assert_eq!(dir.raceway(arguments).code, Some(2), "{arguments:?}");
@@ -427,7 +426,6 @@ fn a_pair_moves_and_a_resumed_one_has_the_same_bits() {
                   whole/front";
     for command in [
         &["cycles", "whole"][..],
-        &["export", "whole", "--to", "csv"],
         &["pack", "whole"],
         &["spectrum", "whole", "--probe", "x_m", "--upto", "1000"],
         &["spall-length", "whole", "--ring", "outer"],

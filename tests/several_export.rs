@@ -1,4 +1,4 @@
-//! `raceway export --to vtu` of a whole list of bearings: blocks in the frame of the shaft, times, refusals.
+//! `raceway export` of a whole list of bearings: blocks and tables in the frame of the shaft, times, refusals.
 
 use checkpoint::{Grid, StepRecord, all_steps, read_mesh, read_step, step_file_name};
 
@@ -24,6 +24,85 @@ fn own(dir: &Dir, folder: &str, step: u64) -> (Grid, StepRecord) {
 
 fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
     (0..3).map(|i| a[i] * b[i]).sum()
+}
+
+/// Rows of a table whose `body` is one of a bearing, without the number of the point.
+fn rows_of(table: &Table, body: f64) -> Vec<Vec<f64>> {
+    let rows = table.rows.iter().filter(|row| row[1] == body);
+    rows.map(|row| row[1..].to_vec()).collect()
+}
+
+/// Wrong: tables of a list would lack a part or a row, or have it in another frame than the blocks: places, fields
+/// and stress of a bearing that is turned by 180 deg about x, at nodes and at integration points.
+#[test]
+fn tables_of_a_list_have_each_part_in_the_frame_of_the_shaft() {
+    let dir = flexible_pair("[output]\nstress = \"integration_points\"\n\n[static]");
+    succeeds(&dir, &["run", "pair.toml", "--out", "out"]);
+    let said = succeeds(&dir, &["export", "out", "--to", "csv"]).stdout;
+    assert!(said.contains("1 step as csv in out/export"), "{said}");
+    let step = all_steps(&dir.path("out/front")).unwrap()[0];
+    let stem = format!("step_{step:06}");
+    let sign = |column: &str, turned: bool| {
+        let odd = ["y_m", "z_m", "_y_m", "_z_m", "_y_n", "_z_n", "_xy_pa", "_xz_pa"];
+        if turned && odd.iter().any(|end| column.ends_with(end)) {
+            -1.0
+        } else {
+            1.0
+        }
+    };
+    let mut shifts = Vec::new();
+    for (name, turned, position) in [("front", false, 0.06), ("rear", true, 0.13)] {
+        succeeds(&dir, &["export", &format!("out/{name}"), "--to", "csv"]);
+        for (end, parts) in [
+            ("", &["inner_ring", "outer_ring", "balls"][..]),
+            ("_integration_points", &["inner_ring", "outer_ring"]),
+        ] {
+            let own = Table::read(&dir, &format!("out/{name}/export/{stem}{end}.csv"));
+            for (body, part) in parts.iter().enumerate() {
+                let table = Table::read(&dir, &format!("out/export/{stem}/{name}_{part}{end}.csv"));
+                assert_eq!(table.columns, own.columns);
+                let (found, expected) = (rows_of(&table, body as f64), rows_of(&own, body as f64));
+                assert_eq!((found.len(), found.is_empty()), (expected.len(), false));
+                for (i, column) in own.columns[1..].iter().enumerate() {
+                    let difference = |(a, b): (&Vec<f64>, &Vec<f64>)| a[i] - sign(column, turned) * b[i];
+                    let off: Vec<f64> = found.iter().zip(&expected).map(difference).collect();
+                    let shift = if column == "z_m" { off[0] } else { 0.0 };
+                    assert!(
+                        off.iter().all(|x| (x - shift).abs() < 1e-15),
+                        "{name} {part} {column}"
+                    );
+                    if column == "z_m" {
+                        shifts.push(shift - position);
+                    }
+                }
+            }
+        }
+    }
+    // Groove centres are at the positions: by so much is each off in its own frame.
+    for shift in &shifts[..5] {
+        assert!(
+            (shift - shifts[0]).abs() < 1e-15 && shift.abs() > 1e-6 && shift.abs() < 2e-4,
+            "{shifts:?}"
+        );
+    }
+    assert!(
+        shifts[5..].iter().all(|shift| (shift + shifts[0]).abs() < 1e-15),
+        "{shifts:?}"
+    );
+    let shaft = Table::read(&dir, &format!("out/export/{stem}/shaft.csv"));
+    let own = Table::read(&dir, "out/shaft.csv");
+    assert_eq!(shaft.column("z_m"), own.column("position_m"));
+    for (there, here) in [("displacement_x_m", "x_m"), ("rotation_y_rad", "tilt_y_rad")] {
+        assert_eq!(shaft.column(there), own.column(here));
+    }
+    assert!(!dir.path("out/export/run.pvd").exists());
+    let again = dir.raceway(&["export", "out", "--to", "csv"]);
+    let text = format!("out/export already holds {stem}; choose another --out or remove it");
+    assert!(
+        again.code == Some(2) && again.stderr.contains(&text),
+        "{}",
+        again.stderr
+    );
 }
 
 /// Wrong: a bearing would stand elsewhere or be turned otherwise than its shaft has it, a field would not be that of
@@ -198,7 +277,7 @@ fn steps_of_a_list_are_those_of_all_bearings() {
         assert!(refused.stderr.contains(expected), "{}", refused.stderr);
     };
     let first = format!(
-        "all/step_{:06}.vtm is there already and is not written over",
+        "all already holds step_{:06}; choose another --out or remove it",
         steps[0]
     );
     refused(&["--out", "all"], &first);

@@ -16,8 +16,8 @@ use dynamics::whirl::{TurningShaft, WhirlMode, turning_inertia};
 use dynamics::{Linearisation, Model, ShaftDof, StaticSolution, StaticSolver};
 use results::campbell::{CAMPBELL_LINES, CAMPBELL_TABLE, ModesAtSpeed};
 use results::failure::Failure;
-use results::stiffness::require_free;
 use results::survey::say_doubts;
+use results::whole::require_free;
 use scene::{AnyScene, Scene, build_model, doubts, model_with_rings};
 
 use crate::campbell_files::{
@@ -107,7 +107,7 @@ pub fn campbell(command: &CampbellCommand) -> Result<(), Failure> {
         }
     };
     require_one_point(&scene.analysis, &scene.path)?;
-    let time = instant(&scene, None)?;
+    let time = instant((&scene.analysis, &scene.path), None)?;
     require_free(&command.out, &[CAMPBELL_TABLE, CAMPBELL_LINES])?;
     let (modes, model, warnings) = diagram(scene.clone(), time, command)?;
     let diagram = Diagram {

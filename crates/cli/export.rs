@@ -21,7 +21,7 @@ pub struct Export {
     steps: Option<RangeInclusive<u64>>,
     /// Form of the files.
     #[arg(long)]
-    to: ExportForm,
+    pub to: ExportForm,
     /// Folder of the files; default: export in the folder of the results.
     #[arg(long)]
     pub out: Option<PathBuf>,
@@ -29,8 +29,9 @@ pub struct Export {
 
 /// Form of the files.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-enum ExportForm {
-    /// One table per step, a row per point: place, body, fields; another of stress at the integration points.
+pub enum ExportForm {
+    /// One table per step, a row per point: place, body, fields; another of stress at the integration points. Of a list
+    /// of bearings a folder per step, with tables of all its parts in the frame of the shaft.
     Csv,
     /// One VTK XML file per step, and run.pvd with their times; of a list of bearings blocks in the frame of the shaft.
     Vtu,
@@ -38,7 +39,7 @@ enum ExportForm {
 
 impl ExportForm {
     /// Ending of the files.
-    fn extension(self) -> &'static str {
+    pub fn extension(self) -> &'static str {
         match self {
             ExportForm::Csv => "csv",
             ExportForm::Vtu => "vtu",
@@ -49,7 +50,7 @@ impl ExportForm {
 impl Export {
     /// Whether all bearings of a list are wanted together.
     pub fn is_of_list(&self) -> Result<bool, Failure> {
-        Ok(self.to == ExportForm::Vtu && !plot::bearings(&self.dir)?.is_empty())
+        Ok(!plot::bearings(&self.dir)?.is_empty())
     }
 
     /// Folder of the files.

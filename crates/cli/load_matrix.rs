@@ -65,7 +65,7 @@ pub fn load_matrix(command: &LoadMatrixCommand) -> Result<(), Failure> {
         )));
     }
     let side = ring_of(&scene, command.ring.as_deref())?;
-    let time = instant(&scene, command.time)?;
+    let time = instant((&scene.analysis, &scene.path), command.time)?;
     let (model, _) = build_model(&scene)?;
     say_doubts(&doubts(&scene, &model));
     let gauges = Gauges::new(&scene.probes.gauges, &model)?;

@@ -11,8 +11,8 @@ use dynamics::kinematics::Speed;
 use dynamics::whirl::WhirlMode;
 use results::campbell::{CAMPBELL_LINES, CAMPBELL_TABLE, ModesAtSpeed};
 use results::failure::Failure;
-use results::stiffness::require_free;
 use results::survey::say_doubts;
+use results::whole::require_free;
 use scene::{SeveralScene, assembly_with_rings, build_assembly};
 
 use crate::campbell_files::{
@@ -22,6 +22,7 @@ use crate::damping::{damping_note, laws};
 use crate::progress::Progress;
 use crate::several::{rings, solving, warnings_at};
 use crate::several_read::all_doubts;
+use crate::stiffness::instant;
 
 /// Share of shaft and housings in the energy below which a mode is one of balls alone, of which there are many.
 const OF_BALLS: f64 = 0.02;
@@ -34,6 +35,7 @@ pub fn campbell(
     out: &Path,
 ) -> Result<(), Failure> {
     require_one_point(&scene.analysis, &scene.path)?;
+    instant((&scene.analysis, &scene.path), None)?;
     require_free(out, &[CAMPBELL_TABLE, CAMPBELL_LINES])?;
     let slip = scene.effects.slip();
     let first = scene::geometry(&scene.bearings[0].scene);

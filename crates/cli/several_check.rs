@@ -2,11 +2,10 @@
 
 use assembly::Assembly;
 use comm::print;
-use dynamics::RingMemory;
 use dynamics::motion::check_supported;
 use results::answer;
 use results::failure::Failure;
-use results::memory::{forecast, forecast_modes_of_list};
+use results::list_memory::{BearingMemory, forecast_list, forecast_modes_of_list};
 use scene::{Analysis, SeveralScene, ShaftKind, build_assembly, have_same_rings};
 
 use crate::bodies::{orders_of_seats, print_bodies};
@@ -24,9 +23,10 @@ pub fn check(scene: &SeveralScene) -> Result<(), Failure> {
     ));
     print_analysis(scene);
     print_effects(&scene.effects.names());
-    let (mut peak, mut memory): (usize, Vec<[Option<RingMemory>; 2]>) = (0, Vec::new());
+    let mut listed: Vec<BearingMemory<'_>> = Vec::new();
     for (i, bearing) in scene.bearings.iter().enumerate() {
-        let geometry = &assembly.bearings[i].model.geometry;
+        let model = &assembly.bearings[i].model;
+        let geometry = &model.geometry;
         print::line(format_args!(
             "bearing  {:?} of {} at {:.3} mm, {}: {} balls, clearance {:.4} mm, free contact angle {:.4} deg",
             bearing.name,
@@ -43,22 +43,23 @@ pub fn check(scene: &SeveralScene) -> Result<(), Failure> {
                 "         its rings are those of {:?}, and are factored once",
                 scene.bearings[k].name
             ));
-            memory.push(memory[k]);
+            listed.push(BearingMemory { model, ..listed[k] });
             continue;
         }
-        let model = &assembly.bearings[i].model;
         if matches!(scene.analysis, Analysis::Dynamic(_)) {
             check_supported(model).map_err(Failure::solving)?;
         }
         let rings = print_rings(model)?;
-        let (start, steps) = forecast((&scene.analysis, model), rings.memory, rings.motion);
-        peak += steps.unwrap_or(0).max(start);
-        memory.push(rings.memory);
+        listed.push(BearingMemory {
+            model,
+            rest: rings.memory,
+            motion: rings.motion,
+        });
     }
+    let (start, steps) = forecast_list(&scene.analysis, &listed);
+    let mut peak = steps.unwrap_or(0).max(start);
     if let Analysis::Modes(wanted) = &scene.analysis {
-        let models = assembly.bearings.iter().map(|bearing| &bearing.model);
-        let bearings: Vec<_> = models.zip(memory).collect();
-        peak = peak.max(forecast_modes_of_list(wanted, &bearings));
+        peak = peak.max(forecast_modes_of_list(wanted, &listed));
     }
     print_bodies(assembly.bearings.iter().map(|bearing| &bearing.model));
     print_shaft(scene, &assembly.shaft);

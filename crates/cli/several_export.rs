@@ -1,6 +1,7 @@
-//! `raceway export --to vtu` of the folder of a list of bearings: each step as blocks in the frame of the shaft.
+//! `raceway export` of the folder of a list of bearings: each step as parts in the frame of the shaft.
 //!
-//! `step_NNNNNN.vtm` names the blocks, whose files are in `step_NNNNNN/`; `run.pvd` has the times.
+//! The files of the parts are in `step_NNNNNN/`: VTU, with `step_NNNNNN.vtm` that names them as blocks and `run.pvd`
+//! with the times, or tables, another for stress at integration points.
 
 use std::path::{Path, PathBuf};
 
@@ -8,11 +9,11 @@ use anyhow::anyhow;
 use checkpoint::{CheckpointError, StepRecord, all_steps, read_any_step, read_mesh};
 use results::export::list::{BearingBodies, Owner, ShownGrid, ShownList};
 use results::export::multiblock::{self, DataBlock};
-use results::export::vtu;
+use results::export::{csv, integration_points, vtu};
 use results::failure::Failure;
-use results::whole::{make_folder, make_output_folder, write_new};
+use results::whole::{make_folder, make_output_folder, require_free, write_new};
 
-use crate::export::{Export, require_same_mesh};
+use crate::export::{Export, ExportForm, require_same_mesh};
 
 /// File of the times of all steps.
 const TIMES: &str = "run.pvd";
@@ -35,7 +36,7 @@ pub fn export(request: &Export) -> Result<(), Failure> {
     }
     let out = request.folder();
     make_output_folder(request.out.as_deref(), &out)?;
-    require_free(&out, &steps)?;
+    require_free_steps(&out, &steps, request.to)?;
     let mut names = Vec::new();
     for step in steps {
         let mut records = Vec::new();
@@ -45,10 +46,13 @@ pub fn export(request: &Export) -> Result<(), Failure> {
             records.push(record);
         }
         let time = common_time(&folders, &records)?;
-        write_step((&list, &bearings), &records, &out)?;
+        let files = StepFiles::new(&out, (step, time), request.to);
+        write_step((&list, &bearings), &records, &files)?;
         names.push((format!("step_{step:06}.vtm"), time));
     }
-    write_new(&out.join(TIMES), |file| vtu::write_collection(file, &names))?;
+    if request.to == ExportForm::Vtu {
+        write_new(&out.join(TIMES), |file| vtu::write_collection(file, &names))?;
+    }
     request.say_written(names.len());
     Ok(())
 }
@@ -102,18 +106,62 @@ fn common_steps(folders: &[(String, PathBuf)], request: &Export) -> Result<Vec<u
 }
 
 /// Fails if anything would be written over, before the first file is.
-fn require_free(out: &Path, steps: &[u64]) -> Result<(), Failure> {
-    let of_steps = steps
-        .iter()
-        .flat_map(|step| [format!("step_{step:06}.vtm"), format!("step_{step:06}")]);
-    let taken = of_steps.chain([TIMES.to_string()]).map(|name| out.join(name));
-    match taken.into_iter().find(|path| path.symlink_metadata().is_ok()) {
-        None => Ok(()),
-        Some(path) => Err(anyhow!(
-            "{} is there already and is not written over; remove it or choose another --out",
-            path.display()
-        )
-        .into()),
+fn require_free_steps(out: &Path, steps: &[u64], form: ExportForm) -> Result<(), Failure> {
+    let mut names = Vec::new();
+    for step in steps {
+        names.push(format!("step_{step:06}"));
+        if form == ExportForm::Vtu {
+            names.push(format!("step_{step:06}.vtm"));
+        }
+    }
+    if form == ExportForm::Vtu {
+        names.push(TIMES.to_string());
+    }
+    let names: Vec<&str> = names.iter().map(String::as_str).collect();
+    Ok(require_free(out, &names)?)
+}
+
+/// The files of a step.
+struct StepFiles<'a> {
+    out: &'a Path,
+    /// Name of its folder there.
+    stem: String,
+    time: f64,
+    form: ExportForm,
+}
+
+impl<'a> StepFiles<'a> {
+    fn new(out: &'a Path, (step, time): (u64, f64), form: ExportForm) -> StepFiles<'a> {
+        StepFiles {
+            out,
+            stem: format!("step_{step:06}"),
+            time,
+            form,
+        }
+    }
+
+    /// Writes a part, and returns the path of its file.
+    fn write(&self, name: &str, shown: &ShownGrid) -> anyhow::Result<String> {
+        let path = format!("{}/{name}.{}", self.stem, self.form.extension());
+        let [points, cells] = shown.fields();
+        match self.form {
+            ExportForm::Vtu => write_new(&self.out.join(&path), |file| {
+                vtu::write_fields(file, self.time, &shown.grid, [&points, &cells])
+            })?,
+            ExportForm::Csv => {
+                write_new(&self.out.join(&path), |file| {
+                    csv::write_fields(file, &shown.grid, &points)
+                })?;
+                let stress = cells.iter().find(|(name, ..)| *name == integration_points::FIELD);
+                if let Some((_, n, values)) = stress {
+                    let path = format!("{}/{name}_integration_points.csv", self.stem);
+                    write_new(&self.out.join(path), |file| {
+                        integration_points::write_rows(file, &shown.grid, (*n, values))
+                    })?;
+                }
+            }
+        }
+        Ok(path)
     }
 }
 
@@ -138,47 +186,45 @@ fn common_time(folders: &[(String, PathBuf)], records: &[StepRecord]) -> Result<
     }
 }
 
-/// Writes the blocks of a step, and then what names them.
+/// Writes the parts of a step, and then what names them as blocks.
 fn write_step(
     (list, bearings): (&ShownList, &[BearingBodies]),
     records: &[StepRecord],
-    out: &Path,
+    files: &StepFiles<'_>,
 ) -> Result<(), Failure> {
-    let (step, time) = (records[0].step, records[0].time);
-    let stem = format!("step_{step:06}");
-    make_folder(&out.join(&stem))?;
-    let write = |name: &str, grid: &ShownGrid| -> anyhow::Result<String> {
-        let path = format!("{stem}/{name}.vtu");
-        let [points, cells] = grid.fields();
-        write_new(&out.join(&path), |file| {
-            vtu::write_fields(file, time, &grid.grid, [&points, &cells])
-        })?;
-        Ok(path)
-    };
+    make_folder(&files.out.join(&files.stem))?;
     let (mut of_bearings, mut bodies) = (Vec::new(), Vec::new());
     for ((bearing, record), name) in bearings.iter().zip(records).zip(list.names()) {
         let mut own = Vec::new();
         for part in list.shown(bearing, record)? {
             match part.owner {
                 Owner::Bearing => {
-                    let path = write(&format!("{name}_{}", part.name.replace(' ', "_")), &part.shown)?;
+                    let path =
+                        files.write(&format!("{name}_{}", part.name.replace(' ', "_")), &part.shown)?;
                     own.push(DataBlock::Leaf(part.name, path));
                 }
                 Owner::Body => {
-                    let path = write(&format!("body_{}", bodies.len()), &part.shown)?;
+                    let path = files.write(&format!("body_{}", bodies.len()), &part.shown)?;
                     bodies.push(DataBlock::Leaf(part.name, path));
                 }
             }
         }
         of_bearings.push(DataBlock::Group(name.to_string(), own));
     }
-    let shaft = DataBlock::Leaf("shaft".to_string(), write("shaft", &list.shaft(step)?)?);
+    let shaft = DataBlock::Leaf(
+        "shaft".to_string(),
+        files.write("shaft", &list.shaft(records[0].step)?)?,
+    );
     let mut blocks = vec![DataBlock::Group("bearings".to_string(), of_bearings)];
     if !bodies.is_empty() {
         blocks.push(DataBlock::Group("bodies".to_string(), bodies));
     }
     blocks.push(shaft);
-    Ok(write_new(&out.join(format!("{stem}.vtm")), |file| {
-        multiblock::write(file, &blocks)
-    })?)
+    if files.form == ExportForm::Csv {
+        return Ok(());
+    }
+    Ok(write_new(
+        &files.out.join(format!("{}.vtm", files.stem)),
+        |file| multiblock::write(file, &blocks),
+    )?)
 }

@@ -11,9 +11,7 @@ use std::time::Instant;
 use assembly::{Assembly, AssemblyError, AssemblySolution, AssemblySolver, AssemblyStart};
 use comm::print;
 use contact::Side;
-use dynamics::Pose;
-use dynamics::effects::Now;
-use dynamics::kinematics::{Rolling, Speed};
+use dynamics::kinematics::Rolling;
 use results::failure::{Failure, agree};
 use results::files::Files;
 use results::memory::Forecasts;
@@ -25,7 +23,7 @@ use results::shown::Shown;
 use results::snapshot::Snapshot;
 use results::stop::Stop;
 use results::summary::{Findings, READ, TOTAL};
-use scene::{QuasiStatic, Scene, SeveralScene, loads_on_shaft, rolling};
+use scene::{QuasiStatic, Scene, SeveralScene};
 use timer::{Laps, Stopwatch};
 
 use crate::instants::{self, Due, OverInstants, WrittenSteps};
@@ -33,6 +31,7 @@ use crate::options::Limits;
 use crate::progress::Progress;
 use crate::several::{self, make_folder, require_same_list, say_types, solving, warnings_at};
 use crate::several_files::{close_bearing, create_files, resume_all, resume_tables};
+use crate::several_instant::{load_at, poses, rolling_of_all};
 use crate::several_quasi_state::{self, ListCounts};
 use crate::several_read::{ReadList, read_list, require_memory_of_all};
 use crate::several_ready::require_space;
@@ -172,9 +171,8 @@ impl<'a> TurningList<'a> {
         assembly: Assembly,
         solver: AssemblySolver,
     ) -> TurningList<'a> {
-        let bearings = scene.bearings.iter();
         TurningList {
-            rolling: bearings.map(|bearing| rolling(&bearing.scene)).collect(),
+            rolling: rolling_of_all(scene),
             scene,
             dt,
             assembly,
@@ -187,28 +185,11 @@ impl<'a> TurningList<'a> {
         n as f64 * self.dt
     }
 
-    /// Where the parts of every bearing stand.
-    fn poses(&self, n: u64) -> Vec<Pose> {
-        let bearings = self.rolling.iter().zip(&self.assembly.bearings);
-        let pose = |(rolling, mounted): (&Option<Rolling>, &assembly::MountedBearing)| {
-            let at_rest = || Rolling::new(&mounted.model.geometry, Speed::constant(0.0), [0.0; 2]);
-            rolling.clone().unwrap_or_else(at_rest).pose(self.time(n))
-        };
-        bearings.map(pose).collect()
-    }
-
     /// Equilibrium of an instant.
     fn solve(&mut self, n: u64, from: Option<&AssemblyStart>) -> Result<AssemblySolution, AssemblyError> {
-        let now = Now {
-            time: self.time(n),
-            ..Now::default()
-        };
-        let Assembly { shaft, bearings, .. } = &self.assembly;
-        let load = loads_on_shaft(self.scene, (shaft, bearings), &now);
-        self.assembly.load = load.map_err(|error| AssemblyError::ShaftBody {
-            problem: error.to_string(),
-        })?;
-        let poses = self.poses(n);
+        let time = self.time(n);
+        load_at(self.scene, &mut self.assembly, time)?;
+        let poses = poses(&self.rolling, &self.assembly, time);
         self.solver.solve_at(&mut self.assembly, &poses, from)
     }
 

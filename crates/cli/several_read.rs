@@ -3,9 +3,9 @@
 use assembly::Assembly;
 use dynamics::Model;
 use results::failure::Failure;
-use results::memory::{require_memory, require_memory_of_modes};
+use results::list_memory::require_memory_of_list;
 use results::survey::{Survey, say_doubts};
-use scene::{Analysis, SeveralScene, build_assembly, doubts};
+use scene::{SeveralScene, build_assembly, doubts};
 
 /// A list that has been read.
 pub struct ReadList {
@@ -36,14 +36,10 @@ pub fn read_list(
     })
 }
 
-/// Fails where a bearing, or modes of all of them, need more memory than there is.
+/// Fails where all bearings together need more memory than there is.
 pub fn require_memory_of_all(scene: &SeveralScene, assembly: &Assembly) -> Result<(), Failure> {
-    if let Analysis::Modes(wanted) = &scene.analysis {
-        let models: Vec<&Model> = assembly.bearings.iter().map(|bearing| &bearing.model).collect();
-        return require_memory_of_modes(wanted, &models);
-    }
-    let mut bearings = assembly.bearings.iter();
-    bearings.try_for_each(|bearing| require_memory(&scene.analysis, &bearing.model))
+    let models: Vec<&Model> = assembly.bearings.iter().map(|bearing| &bearing.model).collect();
+    require_memory_of_list(&scene.analysis, &models)
 }
 
 /// The regions in which the bearings keep fields, if the scene has one.

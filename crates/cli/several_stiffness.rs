@@ -1,6 +1,7 @@
 //! `raceway stiffness` of a scene with a list of bearings: the matrix of each, and that of the shaft at a point.
 //!
-//! The point is where the first `[[shaft.load]]` acts, or else `shaft.load_point`.
+//! The point is where the first `[[shaft.load]]` acts, or else `shaft.load_point`. A list that runs in time is
+//! linearised about the equilibrium of one instant, as one bearing is.
 
 use std::path::Path;
 
@@ -8,28 +9,36 @@ use assembly::stiffness::LinearAssembly;
 use assembly::{Assembly, AssemblyError, AssemblySolution, AssemblySolver, HousedTogether};
 use comm::print;
 use contact::Side;
+use dynamics::Pose;
 use results::failure::Failure;
 use results::several_stiffness::{
     BearingStiffness, CouplingStiffness, SeveralStiffness, ShaftOperatingPoint, ShaftStiffnessAt,
 };
-use results::stiffness::{NOT_OVER_SPEED, OperatingPoint, StiffnessAt, StiffnessResults, require_free};
+use results::stiffness::{NOT_OVER_SPEED, OperatingPoint, StiffnessAt, StiffnessResults};
 use results::survey::say_doubts;
-use results::whole::make_asked_folder;
+use results::whole::{make_asked_folder, require_free};
 use scene::{SeveralScene, assembly_with_rings, build_assembly};
 
 use crate::damping::{damping_note, laws};
 use crate::linear_figures::draw;
 use crate::progress::Progress;
 use crate::several::{at_point, column, points, rings, solving, stage_text, words_of};
+use crate::several_instant::{load_at, poses, rolling_of_all};
 use crate::several_read::all_doubts;
+use crate::several_ripple::{Passing, RippleOfList};
 
-/// Linearises and writes.
-pub fn stiffness(scene: &SeveralScene, out: &Path) -> Result<(), Failure> {
+/// Linearises at a time, s, with the ripple that is asked for, and writes.
+pub fn stiffness(
+    scene: &SeveralScene,
+    (time, ripple): (f64, Option<usize>),
+    out: &Path,
+) -> Result<(), Failure> {
+    let passing = Passing::new(scene, ripple)?;
     let bearings: Vec<String> = scene.bearings.iter().map(|b| b.name.clone()).collect();
     let names = SeveralStiffness::names(&bearings);
     let names: Vec<&str> = names.iter().map(String::as_str).collect();
     require_free(out, &names)?;
-    let results = linearise(scene)?;
+    let results = linearise(scene, time, passing.as_ref())?;
     make_asked_folder(out)?;
     let mut names = results.write(out)?;
     results.print();
@@ -71,7 +80,11 @@ fn empty(scene: &SeveralScene, warnings: Vec<String>) -> SeveralStiffness {
     }
 }
 
-fn linearise(scene: &SeveralScene) -> Result<SeveralStiffness, Failure> {
+fn linearise(
+    scene: &SeveralScene,
+    time: f64,
+    passing: Option<&Passing>,
+) -> Result<SeveralStiffness, Failure> {
     let points = points(scene)?;
     let mut progress = Progress::new(points.len() as u64);
     progress.stage("reading meshes");
@@ -88,18 +101,28 @@ fn linearise(scene: &SeveralScene) -> Result<SeveralStiffness, Failure> {
         progress.stage(&stage_text(column, *value));
         let at = |failure: Failure| at_point(failure, column, *value);
         assembly = assembly_with_rings(point, rings(assembly))?;
-        let solution = solver
-            .solve(&mut assembly, before.as_ref())
+        let at_point = AtPoint {
+            value: *value,
+            scene: point,
+            time,
+        };
+        let (solution, poses) = at_point
+            .solve(&mut assembly, &mut solver, before.as_ref())
             .map_err(solving)
             .map_err(at)?;
         let linear = LinearAssembly::new(&assembly, &solver, &solution, laws(&point.effects))
             .map_err(solving)
             .map_err(at)?;
-        let of_shaft = note_shaft(&linear, (&assembly, &solution), (*value, point), &results);
+        let of_shaft = at_point.of_shaft(&linear, (&assembly, &solution), results.position);
         results.shaft.push(of_shaft.map_err(solving).map_err(at)?);
-        let speed = point.speed.as_ref().map_or(0.0, |speed| speed.inner.at(0.0));
-        note_bearings((*value, point, speed), &linear, &solution, &mut results);
+        at_point.note_bearings(&linear, &solution, &mut results);
         note_couplings(&linear, &mut results);
+        if let Some(passing) = passing {
+            progress.stage("ball-pass ripple");
+            let place = results.position;
+            let found = passing.ripple((&mut assembly, &mut solver), (&solution, &poses), place);
+            note_ripple(found.map_err(solving).map_err(at)?, &mut results);
+        }
         results
             .warnings
             .extend(unloaded(&words_of(column, *value), &assembly, &solution));
@@ -112,31 +135,97 @@ fn linearise(scene: &SeveralScene) -> Result<SeveralStiffness, Failure> {
     Ok(results)
 }
 
-/// The shaft at a point: swept value, load case.
-fn note_shaft(
-    linear: &LinearAssembly,
-    (assembly, solution): (&Assembly, &AssemblySolution),
-    (value, point): (Option<f64>, &SeveralScene),
-    results: &SeveralStiffness,
-) -> Result<ShaftStiffnessAt, AssemblyError> {
-    let speeds = point.speed.clone().unwrap_or_default();
-    let speeds = Side::BOTH.map(|side| speeds.of(side).at(0.0));
-    let position = results.position;
-    let displacement = assembly
-        .shaft
-        .displacement_at(position, &solution.shaft.displacements);
-    Ok(ShaftStiffnessAt {
-        value,
-        speed: speeds[0],
-        stiffness: linear.of_shaft(assembly, position)?,
-        damping: linear.damping_of_shaft(assembly, position)?,
-        displacement,
-        operating_point: ShaftOperatingPoint {
-            time_s: 0.0,
-            speed_rad_per_s: speeds,
-            shaft_displacement: displacement,
-        },
-    })
+/// A point of a list, at an instant.
+struct AtPoint<'a> {
+    /// The swept value.
+    value: Option<f64>,
+    /// Its load case.
+    scene: &'a SeveralScene,
+    /// Time, s.
+    time: f64,
+}
+
+impl AtPoint<'_> {
+    /// The equilibrium, and where the parts of every bearing stand in it.
+    fn solve(
+        &self,
+        assembly: &mut Assembly,
+        solver: &mut AssemblySolver,
+        before: Option<&AssemblySolution>,
+    ) -> Result<(AssemblySolution, Vec<Pose>), AssemblyError> {
+        load_at(self.scene, assembly, self.time)?;
+        let poses = poses(&rolling_of_all(self.scene), assembly, self.time);
+        let start = before.map(AssemblySolution::as_start);
+        let solution = solver.solve_at(assembly, &poses, start.as_ref())?;
+        Ok((solution, poses))
+    }
+
+    /// The shaft at a position, m.
+    fn of_shaft(
+        &self,
+        linear: &LinearAssembly,
+        (assembly, solution): (&Assembly, &AssemblySolution),
+        position: f64,
+    ) -> Result<ShaftStiffnessAt, AssemblyError> {
+        let speeds = self.scene.speed.clone().unwrap_or_default();
+        let speeds = Side::BOTH.map(|side| speeds.of(side).at(self.time));
+        let displacement = assembly
+            .shaft
+            .displacement_at(position, &solution.shaft.displacements);
+        Ok(ShaftStiffnessAt {
+            value: self.value,
+            speed: speeds[0],
+            preload: assembly.preload(solution),
+            stiffness: linear.of_shaft(assembly, position)?,
+            damping: linear.damping_of_shaft(assembly, position)?,
+            displacement,
+            operating_point: ShaftOperatingPoint {
+                time_s: self.time,
+                speed_rad_per_s: speeds,
+                shaft_displacement: displacement,
+            },
+            ripple: None,
+        })
+    }
+
+    /// Notes the matrix of each bearing.
+    fn note_bearings(
+        &self,
+        linear: &LinearAssembly,
+        solution: &AssemblySolution,
+        results: &mut SeveralStiffness,
+    ) {
+        let speed = self.scene.speed.as_ref();
+        let speed = speed.map_or(0.0, |speed| speed.inner.at(self.time));
+        for (i, bearing) in results.bearings.iter_mut().enumerate() {
+            let speeds = self.scene.bearings[i].scene.speed.clone().unwrap_or_default();
+            let speeds = Side::BOTH.map(|side| speeds.of(side).at(self.time));
+            bearing.results.points.push(StiffnessAt {
+                value: self.value,
+                speed,
+                stiffness: linear.stiffness[i],
+                damping: linear.damping[i],
+                load_stiffness: Default::default(),
+                operating_point: OperatingPoint::new(&solution.bearings[i], speeds),
+                ripple: None,
+            });
+        }
+    }
+}
+
+/// Notes the ripple of all matrices of the last point.
+fn note_ripple(found: RippleOfList, results: &mut SeveralStiffness) {
+    if let Some(shaft) = results.shaft.last_mut() {
+        shaft.ripple = Some(found.shaft);
+    }
+    for (bearing, ripple) in results.bearings.iter_mut().zip(found.bearings) {
+        if let Some(point) = bearing.results.points.last_mut() {
+            point.ripple = Some(ripple);
+        }
+    }
+    for (coupling, ripple) in results.couplings.iter_mut().zip(found.couplings) {
+        coupling.ripple.push(ripple);
+    }
 }
 
 /// Says what the damping of each bearing is, and that of the shaft.
@@ -149,28 +238,6 @@ fn note_damping(scene: &SeveralScene, assembly: &Assembly, results: &mut Several
     results.damping_note = damping_note(laws, models);
 }
 
-/// Notes the matrix of each bearing at a point: swept value, load case, speed of the shaft, rad/s.
-fn note_bearings(
-    (value, point, speed): (Option<f64>, &SeveralScene, f64),
-    linear: &LinearAssembly,
-    solution: &AssemblySolution,
-    results: &mut SeveralStiffness,
-) {
-    for (i, bearing) in results.bearings.iter_mut().enumerate() {
-        let speeds = point.bearings[i].scene.speed.clone().unwrap_or_default();
-        let speeds = Side::BOTH.map(|side| speeds.of(side).at(0.0));
-        bearing.results.points.push(StiffnessAt {
-            value,
-            speed,
-            stiffness: linear.stiffness[i],
-            damping: linear.damping[i],
-            load_stiffness: Default::default(),
-            operating_point: OperatingPoint::new(&solution.bearings[i], speeds),
-            ripple: None,
-        });
-    }
-}
-
 /// Notes what bearings do to each other through bodies at a point.
 fn note_couplings(linear: &LinearAssembly, results: &mut SeveralStiffness) {
     for (number, coupling) in linear.couplings.iter().enumerate() {
@@ -181,6 +248,7 @@ fn note_couplings(linear: &LinearAssembly, results: &mut SeveralStiffness) {
                 moved: name(coupling.moved),
                 stiffness: Vec::new(),
                 damping: Vec::new(),
+                ripple: Vec::new(),
             });
         }
         results.couplings[number].stiffness.push(coupling.stiffness);

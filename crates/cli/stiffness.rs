@@ -5,7 +5,7 @@
 //! places of the balls of that time, without inertia.
 
 use std::f64::consts::TAU;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use anyhow::anyhow;
 use clap::Args;
@@ -17,20 +17,18 @@ use dynamics::{DampingLaws, Linearisation, Model, Pose, StaticSolution, StaticSo
 use results::failure::Failure;
 use results::stiffness::{
     NOT_OVER_SPEED, OperatingPoint, ROSS_TABLE, Ripple, STIFFNESS_FILE, STIFFNESS_TABLE, StiffnessAt,
-    StiffnessResults, require_free,
+    StiffnessResults, require_positions,
 };
 use results::survey::say_doubts;
-use results::whole::make_asked_folder;
+use results::whole::{make_asked_folder, require_free};
 use scene::{Analysis, AnyScene, Scene, build_model, doubts, model_with_rings, rolling};
 
 use crate::damping::{damping_note, laws};
 use crate::linear_figures::draw;
 use crate::progress::Progress;
 use crate::run::{SweptScene, points, stage_text};
-use crate::{several, several_stiffness};
+use crate::several_stiffness;
 
-/// Most positions of a ripple: far more than one can be resolved with.
-const MOST_POSITIONS: usize = 1000;
 /// Lowest eigenvalue over the largest at which a matrix counts as not positive: far above its round-off.
 const NOT_POSITIVE: f64 = 1e-9;
 
@@ -58,13 +56,12 @@ pub fn stiffness(command: &StiffnessCommand) -> Result<(), Failure> {
     let scene = match AnyScene::load(&command.scene, &command.overrides)? {
         AnyScene::One(scene) => *scene,
         AnyScene::Several(list) => {
-            several::refuse(command.ripple.map(|_| "--ripple"), &list)?;
-            several::refuse(command.time.map(|_| "--time"), &list)?;
-            return several_stiffness::stiffness(&list, &command.out);
+            let time = instant((&list.analysis, &list.path), command.time)?;
+            return several_stiffness::stiffness(&list, (time, command.ripple), &command.out);
         }
     };
-    let time = instant(&scene, command.time)?;
-    check_positions(command.ripple)?;
+    let time = instant((&scene.analysis, &scene.path), command.time)?;
+    require_positions(command.ripple)?;
     require_free(&command.out, &[STIFFNESS_FILE, STIFFNESS_TABLE, ROSS_TABLE])?;
     let results = linearise(&scene, time, command.ripple)?;
     make_asked_folder(&command.out)?;
@@ -79,9 +76,9 @@ pub fn stiffness(command: &StiffnessCommand) -> Result<(), Failure> {
     Ok(())
 }
 
-/// The instant that is linearised, s.
-pub fn instant(scene: &Scene, asked: Option<f64>) -> Result<f64, Failure> {
-    let duration = match &scene.analysis {
+/// The instant at which a scene of this analysis and file is linearised, s.
+pub fn instant((analysis, path): (&Analysis, &Path), asked: Option<f64>) -> Result<f64, Failure> {
+    let duration = match analysis {
         Analysis::Dynamic(dynamic) => dynamic.n_steps as f64 * dynamic.step,
         Analysis::QuasiStatic(settings) => settings.n_steps as f64 * settings.step,
         Analysis::Static | Analysis::Sweep(_) | Analysis::Modes(_) => {
@@ -89,7 +86,7 @@ pub fn instant(scene: &Scene, asked: Option<f64>) -> Result<f64, Failure> {
                 None => Ok(0.0),
                 Some(_) => Err(Failure::User(anyhow!(
                     "--time is for scenes that run in time, and {} does not; leave it out",
-                    scene.path.display()
+                    path.display()
                 ))),
             };
         }
@@ -98,23 +95,14 @@ pub fn instant(scene: &Scene, asked: Option<f64>) -> Result<f64, Failure> {
     if !(0.0..=duration).contains(&time) {
         return Err(Failure::User(anyhow!(
             "--time is {time}; expected 0 to {duration} s, the time that {} runs",
-            scene.path.display()
+            path.display()
         )));
     }
     print::note(format_args!(
         "note: {} runs in time; it is linearised about the equilibrium at {time} s, without inertia",
-        scene.path.display()
+        path.display()
     ));
     Ok(time)
-}
-
-fn check_positions(ripple: Option<usize>) -> Result<(), Failure> {
-    match ripple {
-        Some(n) if !(2..=MOST_POSITIONS).contains(&n) => Err(Failure::User(anyhow!(
-            "--ripple is {n}; expected 2 to {MOST_POSITIONS} places of the balls in a pitch"
-        ))),
-        _ => Ok(()),
-    }
 }
 
 /// Where the parts of a scene stand at an instant.

@@ -13,7 +13,7 @@ use crate::error::AssemblyError;
 use crate::housing::{HousedTogether, SharedBody, housed_together, shared_bodies};
 use crate::mixing::{Mixing, dot};
 use crate::newton::{Mount, Problem, Scales, SettledShaft, settle};
-use crate::place::MountedBearing;
+use crate::place::{MountedBearing, Orientation};
 use crate::shaft::ShaftBody;
 use crate::support::{BearingSupport, BearingSupports};
 
@@ -104,6 +104,20 @@ impl Assembly {
             scales.tolerance = scales.tolerance.min(model.tolerances.force);
         }
         scales
+    }
+
+    /// Force along the axis by which the bearings press on each other in an equilibrium, N: what the "+z" bearings and
+    /// the "-z" bearings both carry; the rest is the load on the shaft. None unless there are bearings of both.
+    pub fn preload(&self, solution: &AssemblySolution) -> Option<f64> {
+        let carried = |orientation: Orientation| {
+            let bearings = self.bearings.iter().zip(&solution.bearings);
+            let own = bearings.filter(|(bearing, _)| bearing.place.orientation == orientation);
+            own.map(|(_, found)| found.shaft_reaction[2])
+                .reduce(|sum, force| sum + force)
+        };
+        let both = carried(Orientation::PlusZ).zip(carried(Orientation::MinusZ));
+        // Not below 0: a bearing that is pulled the other way presses on no other.
+        both.map(|(plus, minus)| plus.min(minus).max(0.0))
     }
 
     /// Force x, y, z, N, and moment about x and y, N m, about the origin of the shaft, by which a bearing pushes it.

@@ -1,13 +1,13 @@
-//! Stiffness over the points of a sweep, from `stiffness.csv`.
+//! Stiffness over the points of a sweep, from `stiffness.csv`; of bearings pressed together over their preload.
 
 use std::path::Path;
 
 use figure::{Axis, Figure, Series};
 use results::several_stiffness::BEARING_STIFFNESS;
-use results::stiffness::STIFFNESS_TABLE;
+use results::stiffness::{PRELOAD, STIFFNESS_TABLE};
 use results::table::Table;
 
-use super::quantity::{AxisUnit, points};
+use super::quantity::{AxisUnit, NEWTON, points};
 use super::run::axis_of;
 
 /// Newtons per micrometre.
@@ -34,7 +34,10 @@ pub fn figures(dir: &Path) -> anyhow::Result<Vec<(&'static str, Figure)>> {
     let Some(column) = swept.filter(|_| table.n_rows() > 1) else {
         return Ok(Vec::new());
     };
-    let (axis, x) = axis_of(&table, column, "point")?;
+    let (axis, x) = match presses(column) && table.names().iter().any(|name| name == PRELOAD) {
+        true => (NEWTON.axis("preload"), NEWTON.of(table.column(PRELOAD)?)),
+        false => axis_of(&table, column, "point")?,
+    };
     let of = |unit: AxisUnit, names: &[&str], title: &str| -> anyhow::Result<Figure> {
         let figure = Figure::new(title, axis.clone(), stiffness_axis(unit));
         names.iter().try_fold(figure, |figure, name| {
@@ -63,6 +66,12 @@ pub fn figures(dir: &Path) -> anyhow::Result<Vec<(&'static str, Figure)>> {
             )?,
         ),
     ])
+}
+
+/// Whether a swept value presses the bearings of a list together: their stiffness is shown over the force that this
+/// makes, as in catalogues.
+fn presses(column: &str) -> bool {
+    column.starts_with("pairing.")
 }
 
 /// Whether bearings have tables of their own beside that of the shaft.

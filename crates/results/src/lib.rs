@@ -21,6 +21,7 @@ pub mod folder;
 mod free_columns;
 pub mod gauges;
 pub mod integrity;
+pub mod list_memory;
 pub mod load_matrix;
 pub mod log;
 pub mod memory;

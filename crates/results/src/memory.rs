@@ -2,13 +2,11 @@
 
 use std::fmt;
 use std::path::Path;
-use std::sync::Arc;
 
 use anyhow::anyhow;
 use body::SeatTie;
 use comm::Communicator;
 use contact::Side;
-use dynamics::modes::basis_sizes;
 use dynamics::motion::Motion;
 use dynamics::points::{most_ahead, points_per_start, threads_of_points};
 use dynamics::statics::settings;
@@ -16,7 +14,7 @@ use dynamics::{
     Model, MotionMemory, Numbers, Prepared, RingMemory, RingModel, forecast_motion_peak, forecast_peak,
 };
 use rustix::process::{Resource, getrlimit};
-use scene::{Analysis, Dynamic, Modes};
+use scene::{Analysis, Dynamic};
 
 use crate::failure::Failure;
 use crate::seat::tied;
@@ -25,7 +23,7 @@ use crate::seat::tied;
 const OFTEN: u64 = 10;
 
 /// Memory of both rings at rest and in motion: of a rigid ring None and Some(None).
-type RingsOfModel = ([Option<RingMemory>; 2], [Option<Option<MotionMemory>>; 2]);
+pub(crate) type RingsOfModel = ([Option<RingMemory>; 2], [Option<Option<MotionMemory>>; 2]);
 
 /// Forecasts of a run.
 #[derive(Clone, Copy, Debug, Default)]
@@ -115,69 +113,13 @@ pub fn forecast(
     (beside_rings(rest, model), steps)
 }
 
-/// Forecast of the largest resident memory of the natural modes of a list, bytes, from the models of all bearings and
-/// the memory of their rings: each ring has factor, stiffness and mass of its own, and the search keeps vectors over
-/// all of them. Good to a quarter: 736 MB for 830 MB, two bearings with rings of 51 000 dofs each, 20 modes.
-pub fn forecast_modes_of_list(wanted: &Modes, bearings: &[(&Model, [Option<RingMemory>; 2])]) -> usize {
-    let mut sum =
-        forecast_peak([None, None], 1) + vectors_of_list(wanted, bearings.iter().map(|(model, _)| *model));
-    let mut meshes: Vec<&Arc<RingModel>> = Vec::new();
-    for (model, memory) in bearings {
-        for (ring, memory) in model.rings.iter().zip(memory) {
-            let (Some(ring), Some(memory)) = (ring, memory) else {
-                continue;
-            };
-            sum += memory.kept + memory.assembly + memory.results;
-            // Bearings of one type share their mesh.
-            if !meshes.iter().any(|other| Arc::ptr_eq(other, ring)) {
-                meshes.push(ring);
-                sum += memory.mesh;
-            }
-        }
-    }
-    bearings
-        .iter()
-        .fold(sum, |sum, (model, _)| with_bodies(sum, model))
-}
-
-/// Vectors of the search for modes of a list, its restart included, bytes.
-fn vectors_of_list<'m>(wanted: &Modes, models: impl Iterator<Item = &'m Model>) -> usize {
-    let (mut n_balls, mut n_dofs) = (0, 0);
-    for model in models {
-        n_balls += model.geometry.n_balls;
-        n_dofs += model
-            .rings
-            .iter()
-            .flatten()
-            .map(|ring| ring.mesh.n_dofs())
-            .sum::<usize>();
-    }
-    let [_, n_vectors] = basis_sizes(wanted.number, n_balls);
-    2 * size_of::<f64>() * n_vectors * n_dofs
-}
-
-/// Fails if the modes of a list need more memory than there is for them, as [`require_memory`] does.
-pub fn require_memory_of_modes(wanted: &Modes, models: &[&Model]) -> Result<(), Failure> {
-    let rings = models.iter().flat_map(|model| model.rings.iter().flatten());
-    let n_nodes: usize = rings.map(|ring| ring.mesh.n_nodes()).sum();
-    let most = MOST_PER_NODE * n_nodes as u64 + vectors_of_list(wanted, models.iter().copied()) as u64;
-    let Some(bound) = bound().filter(|bound| bound.bytes < most) else {
-        return Ok(());
-    };
-    let mut bearings = Vec::new();
-    for model in models {
-        bearings.push((*model, rings_of(model)?.0));
-    }
-    require(forecast_modes_of_list(wanted, &bearings), bound)
-}
-
 /// The peak of rings with what is there besides.
 fn beside_rings(rings: usize, model: &Model) -> usize {
     with_bodies(with_surfaces(rings, model), model)
 }
 
 /// The peak of the rest with the bodies of the rings, which are made before it.
-fn with_bodies(rest: usize, model: &Model) -> usize {
+pub(crate) fn with_bodies(rest: usize, model: &Model) -> usize {
     let sides = Side::BOTH.into_iter();
     sides.fold(rest, |rest, side| with_body(rest, model, side))
 }
@@ -203,7 +145,7 @@ fn with_body(rest: usize, model: &Model, side: Side) -> usize {
 }
 
 /// More memory than a ring takes for each of its nodes, bytes: five times that of a sparse factor of 17 k nodes.
-const MOST_PER_NODE: u64 = 50_000;
+pub(crate) const MOST_PER_NODE: u64 = 50_000;
 
 /// Fails if a run of this model, of which nothing is factored yet, needs more memory than there is for it by its
 /// forecast. That is made only where memory may be short: it costs the analysis of the matrices.
@@ -219,7 +161,7 @@ pub fn require_memory(analysis: &Analysis, model: &Model) -> Result<(), Failure>
 }
 
 /// Memory of the rings of a model at rest and in motion, of which nothing is factored yet.
-fn rings_of(model: &Model) -> Result<RingsOfModel, Failure> {
+pub(crate) fn rings_of(model: &Model) -> Result<RingsOfModel, Failure> {
     let (mut statics, mut motion) = ([None; 2], [Some(None); 2]);
     for side in Side::BOTH {
         let Some(ring) = model.ring(side) else { continue };
@@ -232,7 +174,7 @@ fn rings_of(model: &Model) -> Result<RingsOfModel, Failure> {
 }
 
 /// Fails if a peak, bytes, is more than there may be.
-fn require(peak: usize, bound: Bound) -> Result<(), Failure> {
+pub(crate) fn require(peak: usize, bound: Bound) -> Result<(), Failure> {
     let peak = peak as u64;
     allocator::expect(peak);
     if peak <= bound.bytes {
@@ -303,7 +245,7 @@ pub fn queued_steps(dynamic: &Dynamic) -> usize {
 }
 
 /// Number of threads that make rings: ranks make one after the other.
-fn rings_at_once() -> usize {
+pub(crate) fn rings_at_once() -> usize {
     match Communicator::world().size() {
         1 => rayon::current_num_threads(),
         _ => 1,

@@ -17,8 +17,8 @@ use serde::Serialize;
 
 use crate::failure::Failure;
 use crate::stiffness::{
-    SCHEMA, STIFFNESS_FILE, STIFFNESS_TABLE, StiffnessAt, StiffnessResults, TableLine, UNITS, print_matrix,
-    table,
+    Ripple, SCHEMA, STIFFNESS_FILE, STIFFNESS_TABLE, StiffnessAt, StiffnessResults, TableLine, UNITS,
+    print_matrix, print_ripple, table,
 };
 use crate::summary::print_warnings;
 use crate::whole;
@@ -37,6 +37,10 @@ pub struct ShaftStiffnessAt {
     /// Speed of the shaft, rad/s.
     #[serde(rename = "speed_rad_per_s")]
     pub speed: f64,
+    /// Force along the axis by which the bearings press on each other, N; None unless there are bearings of both
+    /// orientations.
+    #[serde(rename = "preload_n", skip_serializing_if = "Option::is_none")]
+    pub preload: Option<f64>,
     /// Stiffness.
     pub stiffness: ShaftMatrix,
     /// Damping; null where the scene has no damping law.
@@ -45,6 +49,9 @@ pub struct ShaftStiffnessAt {
     pub displacement: [f64; N_SHAFT],
     /// The equilibrium; what bearings and balls carry stands in those of the bearings.
     pub operating_point: ShaftOperatingPoint,
+    /// Ball-pass ripple, if it was asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub ripple: Option<Ripple>,
 }
 
 /// The equilibrium of the shaft.
@@ -82,6 +89,9 @@ pub struct CouplingStiffness {
     pub stiffness: Vec<ShaftMatrix>,
     /// Damping at all points; null where there is none.
     pub damping: Vec<Option<ShaftMatrix>>,
+    /// Ball-pass ripple of the stiffness at all points, if it was asked for.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub ripple: Vec<Ripple>,
 }
 
 /// Everything that is written.
@@ -163,9 +173,10 @@ impl SeveralStiffness {
         text.push(b'\n');
         whole::write_new(&dir.join(STIFFNESS_FILE), |file| file.write_all(&text))?;
         let line = |point: &ShaftStiffnessAt| TableLine {
-            time: 0.0,
+            time: point.operating_point.time_s,
             value: point.value,
             speed: point.speed,
+            preload: point.preload,
             stiffness: point.stiffness,
             damping: point.damping,
         };
@@ -240,6 +251,7 @@ impl SeveralStiffness {
                 ));
             }
         }
+        self.print_preload();
         if let [shaft] = self.shaft.as_slice() {
             let title = format!(
                 "shaft at {:.3} mm, N/m, N/rad, N m/m, N m/rad",
@@ -249,7 +261,32 @@ impl SeveralStiffness {
             let damping = shaft.damping.iter();
             damping.for_each(|damping| print_matrix("damping there, N s/m and so on", damping));
         }
+        self.print_ripple();
         print::line(format_args!("damping: {}", self.damping_note));
         print_warnings(&self.warnings);
+    }
+
+    fn print_preload(&self) {
+        for (i, shaft) in self.shaft.iter().enumerate() {
+            if let Some(preload) = shaft.preload {
+                print::line(format_args!(
+                    "point {i}: the bearings press on each other with {preload:.2} N along the axis"
+                ));
+            }
+        }
+    }
+
+    fn print_ripple(&self) {
+        for (i, shaft) in self.shaft.iter().enumerate() {
+            let of_bearing = |b| {
+                let BearingStiffness { name, results, .. }: &BearingStiffness = b;
+                let ripple = results.points[i].ripple.as_ref();
+                ripple.map(|ripple| (name.as_str(), ripple))
+            };
+            let own = self.bearings.iter().filter_map(of_bearing);
+            for (name, ripple) in own.chain(shaft.ripple.as_ref().map(|ripple| ("shaft", ripple))) {
+                print_ripple(&format!("point {i}, {name}"), ripple);
+            }
+        }
     }
 }

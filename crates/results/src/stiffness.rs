@@ -30,9 +30,13 @@ pub const NOT_OVER_SPEED: &str = "the speeds of the points do not grow from one 
 pub(crate) const SCHEMA: u32 = 1;
 pub(crate) const UNITS: &str =
     "stiffness N/m, N/rad, N m/m, N m/rad; damping the same times s; displacements m, rad; loads N, N m";
+/// Most positions of a ripple: far more than one can be resolved with.
+pub const MOST_POSITIONS: usize = 1000;
 /// What stands in the table before the swept value, and after it before the entries.
 const FIRST_COLUMNS: [&str; 2] = ["point", "time_s"];
 const SPEED: &str = "speed_rad_per_s";
+/// Column of the force by which the bearings of a list press on each other.
+pub const PRELOAD: &str = "preload_n";
 
 /// Force of a ball on its raceways.
 #[derive(Clone, Debug, Serialize)]
@@ -182,17 +186,13 @@ struct SweptStiffness<'a> {
     points: &'a [StiffnessAt],
 }
 
-/// Fails if a folder holds any of the files: nothing is written over.
-pub fn require_free(dir: &Path, names: &[&str]) -> Result<(), Failure> {
-    let found = names
-        .iter()
-        .find(|name| dir.join(name).symlink_metadata().is_ok());
-    match found {
-        None => Ok(()),
-        Some(name) => Err(Failure::User(anyhow!(
-            "{} already holds {name}; choose another --out or remove it",
-            dir.display()
+/// Refuses numbers of places of the balls that are no ripple, or far more than one.
+pub fn require_positions(ripple: Option<usize>) -> Result<(), Failure> {
+    match ripple {
+        Some(n) if !(2..=MOST_POSITIONS).contains(&n) => Err(Failure::User(anyhow!(
+            "--ripple is {n}; expected 2 to {MOST_POSITIONS} places of the balls in a pitch"
         ))),
+        _ => Ok(()),
     }
 }
 
@@ -241,6 +241,7 @@ impl StiffnessResults {
             time: point.operating_point.time_s,
             value: point.value,
             speed: point.speed,
+            preload: None,
             stiffness: point.stiffness,
             damping: point.damping,
         };
@@ -289,16 +290,9 @@ impl StiffnessResults {
             damping.for_each(|damping| print_matrix("damping, N s/m and so on", damping));
         }
         for (i, point) in self.points.iter().enumerate() {
-            let Some(ripple) = &point.ripple else { continue };
-            let share = |i: usize| 50.0 * (ripple.maximum[i][i] - ripple.minimum[i][i]) / ripple.mean[i][i];
-            let cells: Vec<String> = (0..N_SHAFT)
-                .map(|i| format!("{} {:.4}", AXES[i], share(i)))
-                .collect();
-            print::line(format_args!(
-                "point {i}: ball-pass ripple, +- % of the mean over {} positions: {}",
-                ripple.positions,
-                cells.join(", ")
-            ));
+            if let Some(ripple) = &point.ripple {
+                print_ripple(&format!("point {i}"), ripple);
+            }
         }
         print::line(format_args!("damping: {}", self.damping_note));
         print_warnings(&self.warnings);
@@ -313,6 +307,8 @@ pub struct TableLine {
     pub value: Option<f64>,
     /// Speed of the shaft, rad/s.
     pub speed: f64,
+    /// Force by which bearings press on each other, N, of the shaft of a list that has bearings of both orientations.
+    pub preload: Option<f64>,
     /// Stiffness.
     pub stiffness: ShaftMatrix,
     /// Damping, if there is any.
@@ -323,11 +319,13 @@ pub struct TableLine {
 pub fn table(column: Option<&str>, lines: &[TableLine]) -> anyhow::Result<Vec<u8>> {
     let mut writer = csv::Writer::from_writer(Vec::new());
     let has_damping = lines.iter().all(|line| line.damping.is_some());
+    let has_preload = lines.iter().all(|line| line.preload.is_some());
     let mut names: Vec<String> = FIRST_COLUMNS.map(str::to_string).to_vec();
     names.extend(column.map(str::to_string));
     names.push(SPEED.to_string());
     names.extend(entry_names("k"));
     names.extend(has_damping.then(|| entry_names("c")).into_iter().flatten());
+    names.extend(has_preload.then(|| PRELOAD.to_string()));
     writer.write_record(&names)?;
     for (i, line) in lines.iter().enumerate() {
         let mut cells = vec![i.to_string()];
@@ -336,7 +334,8 @@ pub fn table(column: Option<&str>, lines: &[TableLine]) -> anyhow::Result<Vec<u8
         let numbers = numbers.chain([line.speed]);
         let numbers = numbers.chain(line.stiffness.as_flattened().iter().copied());
         let damping = line.damping.iter().flat_map(|c| c.as_flattened().to_vec());
-        cells.extend(numbers.chain(damping).map(|x| format!("{x:?}")));
+        let preload = line.preload.filter(|_| has_preload);
+        cells.extend(numbers.chain(damping).chain(preload).map(|x| format!("{x:?}")));
         writer.write_record(&cells)?;
     }
     Ok(writer.into_inner()?)
@@ -346,6 +345,20 @@ pub fn table(column: Option<&str>, lines: &[TableLine]) -> anyhow::Result<Vec<u8
 fn entry_names(of: &str) -> Vec<String> {
     let row = |i: &str| AXES.map(|j| format!("{of}_{i}_{j}"));
     AXES.iter().flat_map(|i| row(i)).collect()
+}
+
+/// Prints the ripple of the diagonal; that of a bearing without load has no mean, and is 0.
+pub(crate) fn print_ripple(of: &str, ripple: &Ripple) {
+    let share = |i: usize| match ripple.mean[i][i] {
+        0.0 => 0.0,
+        mean => 50.0 * (ripple.maximum[i][i] - ripple.minimum[i][i]) / mean,
+    };
+    let cells = (0..N_SHAFT).map(|i| format!("{} {:.4}", AXES[i], share(i)));
+    print::line(format_args!(
+        "{of}: ball-pass ripple, +- % of the mean over {} positions: {}",
+        ripple.positions,
+        cells.collect::<Vec<_>>().join(", ")
+    ));
 }
 
 pub(crate) fn print_matrix(title: &str, matrix: &ShaftMatrix) {

@@ -62,6 +62,18 @@ pub fn write_picture(path: &Path, svg: &str, png: &[u8]) -> anyhow::Result<()> {
     write(&path.with_added_extension("png"), png, |_| true)
 }
 
+/// Fails if a folder holds any of these: nothing is written over.
+pub fn require_free(dir: &Path, names: &[&str]) -> anyhow::Result<()> {
+    let is_taken = |name: &&&str| dir.join(name).symlink_metadata().is_ok();
+    match names.iter().find(is_taken) {
+        None => Ok(()),
+        Some(name) => Err(anyhow!(
+            "{} already holds {name}; choose another --out or remove it",
+            dir.display()
+        )),
+    }
+}
+
 /// Makes a folder in one that is there, unless somebody else just did. A link in its place is not followed.
 pub fn make_folder(path: &Path) -> anyhow::Result<()> {
     match std::fs::create_dir(path) {

@@ -5,17 +5,23 @@ use std::io::{self, Write};
 
 use checkpoint::{Grid, StepRecord};
 
+use super::vtu::FieldArray;
+
 /// Suffixes of the columns of a field by its number of components.
 const VECTOR: [&str; 3] = ["_x", "_y", "_z"];
 const TENSOR: [&str; 6] = ["_xx", "_yy", "_zz", "_xy", "_yz", "_xz"];
 
-/// Writes the table.
+/// Writes the table of a step.
 pub fn write(file: &mut dyn Write, grid: &Grid, record: &StepRecord) -> io::Result<()> {
-    let arrays = record.points.arrays();
+    write_fields(file, grid, &record.points.arrays())
+}
+
+/// Writes the table of a grid with fields over its points.
+pub fn write_fields(file: &mut dyn Write, grid: &Grid, arrays: &[FieldArray<'_>]) -> io::Result<()> {
     let mut head = ["point", "body", "x_m", "y_m", "z_m"]
         .map(str::to_string)
         .to_vec();
-    for (name, n_components, _) in &arrays {
+    for (name, n_components, _) in arrays {
         let suffixes: &[&str] = match n_components {
             3 => &VECTOR,
             6 => &TENSOR,
@@ -46,6 +52,7 @@ pub fn write(file: &mut dyn Write, grid: &Grid, record: &StepRecord) -> io::Resu
 fn unit(name: &str) -> &'static str {
     match name {
         "displacement" => "_m",
+        "rotation" => "_rad",
         "velocity" => "_m_per_s",
         "acceleration" => "_m_per_s2",
         "stress" | "von_mises" => "_pa",

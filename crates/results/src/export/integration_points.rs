@@ -11,12 +11,24 @@ use mesh::ElementKind;
 const HEAD: &str = "cell,body,point,x_m,y_m,z_m,stress_xx_pa,stress_yy_pa,stress_zz_pa,stress_xy_pa,stress_yz_pa,\
                     stress_xz_pa,von_mises_pa";
 
-/// Writes the table; cells without integration points, balls, have no row.
+/// The field over cells that has this stress.
+pub const FIELD: &str = "stress_integration_points";
+
+/// Writes the table of a step; cells without integration points, balls, have no row.
 pub fn write(file: &mut dyn Write, grid: &Grid, stress: &IntegrationPointStress) -> io::Result<()> {
+    write_rows(file, grid, (stress.n_components(), &stress.values))
+}
+
+/// The same of a grid with so many components for each cell.
+pub fn write_rows(
+    file: &mut dyn Write,
+    grid: &Grid,
+    (n_components, values): (usize, &[f64]),
+) -> io::Result<()> {
     writeln!(file, "{HEAD}")?;
     let kinds = [ElementKind::Hex8, ElementKind::Hex20, ElementKind::Tet10];
     let rules = kinds.map(|kind| (kind, stiffness_rule(kind).points));
-    for (cell, row) in stress.values.chunks_exact(stress.n_components()).enumerate() {
+    for (cell, row) in values.chunks_exact(n_components).enumerate() {
         let kind = rules.iter().find(|(kind, _)| kind.vtk_type() == grid.types[cell]);
         let Some((kind, points)) = kind else { continue };
         let tensors = row.as_chunks::<6>().0;

@@ -1,0 +1,199 @@
+//! Forecasts of the memory of lists of bearings: what bearings share counts once.
+//!
+//! At rest bearings of one type share meshes and factors, and types are made one after the other. In motion rings that
+//! are alike share what they are made of and their factors, also where they sit in seats of their own. What each
+//! bearing has for itself is counted by its nodes, measured (`tests/memory_of_lists.rs`): fields, states and vectors,
+//! lists of stress and output, steps that wait to be written. Two bearings in one housing of the example: -15 to +13 %.
+
+use std::sync::Arc;
+
+use comm::Communicator;
+use dynamics::modes::basis_sizes;
+use dynamics::{Model, MotionMemory, RingMemory, RingModel, forecast_motion_peak, forecast_peak};
+use scene::{Analysis, Modes};
+
+use crate::failure::Failure;
+use crate::memory::{
+    Bound, MOST_PER_NODE, bound, queued_steps, require, rings_at_once, rings_of, with_bodies,
+};
+
+/// Files and tables of a bearing after the first, bytes, measured on rigid rings.
+const BEARING_BYTES: usize = 2_400_000;
+
+/// What a bearing of a known type has for itself at rest, bytes per node of its rings, measured.
+const AT_REST_BYTES: usize = 263;
+
+/// The same in motion of a ring like an earlier one, beside the steps that wait to be written.
+const IN_MOTION_BYTES: usize = 520;
+
+/// A bearing of a list, with the memory of its rings as if it were alone.
+#[derive(Clone, Copy)]
+pub struct BearingMemory<'m> {
+    /// The bearing.
+    pub model: &'m Model,
+    /// Its rings at rest; None of a rigid ring.
+    pub rest: [Option<RingMemory>; 2],
+    /// In motion: Some(None) of a rigid ring, None when its steps are not forecast.
+    pub motion: [Option<Option<MotionMemory>>; 2],
+}
+
+impl BearingMemory<'_> {
+    /// Whether it has the very rings of another.
+    fn is_of_type(&self, other: &BearingMemory<'_>) -> bool {
+        let same = |(a, b): (&Option<Arc<RingModel>>, &Option<Arc<RingModel>>)| match (a, b) {
+            (Some(a), Some(b)) => Arc::ptr_eq(a, b),
+            (a, b) => a.is_none() && b.is_none(),
+        };
+        self.model.rings.iter().zip(&other.model.rings).all(same)
+    }
+
+    fn n_nodes(&self) -> usize {
+        let rings = self.model.rings.iter().flatten();
+        rings.map(|ring| ring.mesh.n_nodes()).sum()
+    }
+
+    /// What lasts of its rings at rest once they are made.
+    fn lasting(&self) -> usize {
+        let rings = self.rest.iter().flatten();
+        rings.map(|ring| ring.mesh + ring.results + ring.kept).sum()
+    }
+}
+
+/// Forecast of the largest resident memory of a list, bytes: until there is an equilibrium, and in steps of a motion.
+pub fn forecast_list(analysis: &Analysis, bearings: &[BearingMemory<'_>]) -> (usize, Option<usize>) {
+    let (program, at_once) = (forecast_peak([None, None], 1), rings_at_once());
+    let is_first = |i: &usize| !bearings[..*i].iter().any(|known| known.is_of_type(&bearings[*i]));
+    let first: Vec<usize> = (0..bearings.len()).filter(is_first).collect();
+    let lasting: usize = first.iter().map(|&i| bearings[i].lasting()).sum();
+    let making = |&i: &usize| forecast_peak(bearings[i].rest, at_once) - program - bearings[i].lasting();
+    let further = (0..bearings.len()).filter(|i| !first.contains(i));
+    let further: usize = further.map(|i| bearings[i].n_nodes()).sum();
+    let rest = program + lasting + first.iter().map(making).max().unwrap_or(0) + AT_REST_BYTES * further;
+    let files = BEARING_BYTES * bearings.len().saturating_sub(1);
+    let with_all = |peak: usize| bearings.iter().fold(peak, |sum, b| with_bodies(sum, b.model)) + files;
+    (with_all(rest), steps_of(analysis, bearings).map(with_all))
+}
+
+/// Forecast of the steps of a motion without bodies, bytes; None where there is none.
+fn steps_of(analysis: &Analysis, bearings: &[BearingMemory<'_>]) -> Option<usize> {
+    let Analysis::Dynamic(dynamic) = analysis else {
+        return None;
+    };
+    let (queued, program) = (queued_steps(dynamic), forecast_peak([None, None], 1));
+    let (mut kept, mut making) = (0, 0);
+    for (i, bearing) in bearings.iter().enumerate() {
+        let mut own = [None; 2];
+        for side in 0..2 {
+            let Some(memory) = bearing.motion[side]? else {
+                continue;
+            };
+            let ring = bearing.model.rings[side].as_ref()?;
+            let is_alike = |other: &BearingMemory<'_>| {
+                let known = other.model.rings[side].as_ref();
+                known.is_some_and(|known| Arc::ptr_eq(known, ring) || known.is_like(ring))
+            };
+            own[side] = Some(match bearings[..i].iter().any(is_alike) {
+                true => {
+                    let beside = IN_MOTION_BYTES * ring.mesh.n_nodes();
+                    MotionMemory {
+                        making: beside,
+                        kept: beside,
+                        ..memory
+                    }
+                }
+                false => memory,
+            });
+        }
+        let held: usize = own
+            .iter()
+            .flatten()
+            .map(|ring| ring.kept + queued * ring.queued)
+            .sum();
+        let peak = forecast_motion_peak(own, queued, rings_at_once()) - program;
+        making = making.max(kept + peak);
+        kept += held;
+    }
+    Some(program + kept.max(making))
+}
+
+/// Forecast of the largest resident memory of the natural modes of a list, bytes: each ring has factor, stiffness and
+/// mass of its own, and the search keeps vectors over all of them. Good to a quarter: 736 MB for 830 MB, two bearings
+/// with rings of 51 000 dofs each, 20 modes.
+pub fn forecast_modes_of_list(wanted: &Modes, bearings: &[BearingMemory<'_>]) -> usize {
+    let models = bearings.iter().map(|bearing| bearing.model);
+    let mut sum = forecast_peak([None, None], 1) + vectors_of_list(wanted, models);
+    let mut meshes: Vec<&Arc<RingModel>> = Vec::new();
+    for bearing in bearings {
+        for (ring, memory) in bearing.model.rings.iter().zip(&bearing.rest) {
+            let (Some(ring), Some(memory)) = (ring, memory) else {
+                continue;
+            };
+            sum += memory.kept + memory.assembly + memory.results;
+            // Bearings of one type share their mesh.
+            if !meshes.iter().any(|other| Arc::ptr_eq(other, ring)) {
+                meshes.push(ring);
+                sum += memory.mesh;
+            }
+        }
+    }
+    bearings
+        .iter()
+        .fold(sum, |sum, bearing| with_bodies(sum, bearing.model))
+}
+
+/// Vectors of the search for modes of a list, its restart included, bytes.
+fn vectors_of_list<'m>(wanted: &Modes, models: impl Iterator<Item = &'m Model>) -> usize {
+    let (mut n_balls, mut n_dofs) = (0, 0);
+    for model in models {
+        n_balls += model.geometry.n_balls;
+        n_dofs += model
+            .rings
+            .iter()
+            .flatten()
+            .map(|ring| ring.mesh.n_dofs())
+            .sum::<usize>();
+    }
+    let [_, n_vectors] = basis_sizes(wanted.number, n_balls);
+    2 * size_of::<f64>() * n_vectors * n_dofs
+}
+
+/// Fails if a list, of which nothing is factored yet, needs more memory than there is for it by its forecast, as
+/// [`crate::memory::require_memory`] does for one bearing.
+pub fn require_memory_of_list(analysis: &Analysis, models: &[&Model]) -> Result<(), Failure> {
+    let rings = models.iter().flat_map(|model| model.rings.iter().flatten());
+    let n_nodes: usize = rings.map(|ring| ring.mesh.n_nodes()).sum();
+    let vectors = match analysis {
+        Analysis::Modes(wanted) => vectors_of_list(wanted, models.iter().copied()),
+        _ => 0,
+    };
+    let most = MOST_PER_NODE * n_nodes as u64 + vectors as u64;
+    let short = bound().filter(|bound: &Bound| bound.bytes < most);
+    let is_known = matches!(analysis, Analysis::Modes(_)) || Communicator::world().size() == 1;
+    let Some(bound) = short.filter(|_| is_known) else {
+        return Ok(());
+    };
+    let mut bearings: Vec<BearingMemory<'_>> = Vec::new();
+    for &model in models {
+        let none = BearingMemory {
+            model,
+            rest: [None; 2],
+            motion: [None; 2],
+        };
+        let known = bearings.iter().find(|known| known.is_of_type(&none)).copied();
+        bearings.push(match known {
+            Some(known) => BearingMemory { model, ..known },
+            None => {
+                let (rest, motion) = rings_of(model)?;
+                BearingMemory { rest, motion, ..none }
+            }
+        });
+    }
+    let peak = match analysis {
+        Analysis::Modes(wanted) => forecast_modes_of_list(wanted, &bearings),
+        _ => {
+            let (start, steps) = forecast_list(analysis, &bearings);
+            steps.unwrap_or(0).max(start)
+        }
+    };
+    require(peak, bound)
+}

@@ -1,0 +1,79 @@
+//! The force by which bearings of a list press on each other, in `raceway stiffness` and its figure.
+
+use serde_json::Value;
+
+use crate::several::{PAIR, succeeds, with_type};
+use crate::util::tables::Table;
+use crate::util::{assert_close, assert_within};
+
+/// The bearings of the pair on a rigid shaft that moves along the axis alone, without load.
+fn unloaded(pairing: &str) -> String {
+    let bearings = PAIR.split("[pairing]").next().unwrap();
+    format!(
+        "{bearings}\n[pairing]\n{pairing}\n\n[shaft]\nmodel = \"rigid\"\nx = \"locked\"\ny = \"locked\"\n\
+         z = \"free\"\ntilt_x = \"locked\"\ntilt_y = \"locked\"\n\n"
+    )
+}
+
+/// Wrong: stiffness would be shown over another force than that of the catalogues. Clamping moves each ring by half of
+/// the offset, so the force grows by half the stiffness of a bearing along the axis: differences over 0.2 um, whose
+/// error is a 24th of (0.2 / 20)^2.
+#[test]
+fn stiffness_of_a_sweep_of_the_offset_stands_over_the_preload() {
+    let dir = with_type();
+    let sweep = "[sweep]\nkey = \"pairing.offset\"\nvalues = [\"19.9 um\", \"20 um\", \"20.1 um\"]\n";
+    dir.write("pair.toml", unloaded("offset = \"20 um\"") + sweep);
+    let said = succeeds(&dir, &["stiffness", "pair.toml", "--out", "k"]);
+    let table = Table::read(&dir, "k/stiffness.csv");
+    assert_eq!(table.columns.last().unwrap(), "preload_n");
+    let preload = table.column("preload_n");
+    let json: Value = serde_json::from_str(&dir.text("k/stiffness.json")).unwrap();
+    let of_bearing = json["bearings"]["front"]["points"][1]["stiffness"][2][2]
+        .as_f64()
+        .unwrap();
+    assert_close(
+        "growth of the preload",
+        (preload[2] - preload[0]) / 0.2e-6,
+        0.5 * of_bearing,
+        1e-4,
+    );
+    assert_within(
+        "in the file",
+        json["shaft"]["points"][1]["preload_n"].as_f64().unwrap(),
+        preload[1],
+        0.0,
+    );
+    let line = format!(
+        "point 1: the bearings press on each other with {:.2} N along the axis",
+        preload[1]
+    );
+    assert!(said.stdout.contains(&line), "{}", said.stdout);
+    // The figure has the force on its axis, and no offset.
+    let figure = dir.text("k/stiffness.svg");
+    assert!(
+        figure.contains("preload") && !figure.contains("offset"),
+        "{figure}"
+    );
+    assert!(dir.text("k/stiffness_tilt.svg").contains("preload"));
+}
+
+/// Wrong: a load along the shaft would count as preload, or bearings that press one way only would have some.
+#[test]
+fn the_preload_is_what_both_orientations_carry() {
+    let dir = with_type();
+    let loaded = "[[shaft.load]]\nposition = \"0 mm\"\nforce = [\"0 N\", \"0 N\", \"200 N\"]\n\n[static]\n";
+    dir.write(
+        "soft.toml",
+        unloaded("spring = \"500 N\"\nsliding = \"rear\"") + loaded,
+    );
+    succeeds(&dir, &["stiffness", "soft.toml", "--out", "soft"]);
+    let preload = Table::read(&dir, "soft/stiffness.csv").column("preload_n");
+    assert_close("soft", preload[0], 500.0, 1e-8);
+    let tandem = unloaded("")
+        .replace("\"-z\"", "\"+z\"")
+        .replace("[pairing]\n", "");
+    dir.write("tandem.toml", tandem + loaded);
+    succeeds(&dir, &["stiffness", "tandem.toml", "--out", "tandem"]);
+    assert!(!dir.text("tandem/stiffness.csv").contains("preload_n"));
+    assert!(!dir.text("tandem/stiffness.json").contains("preload_n"));
+}
