@@ -109,7 +109,7 @@ pub fn campbell(command: &CampbellCommand) -> Result<(), Failure> {
     require_one_point(&scene.analysis, &scene.path)?;
     let time = instant((&scene.analysis, &scene.path), None)?;
     require_free(&command.out, &[CAMPBELL_TABLE, CAMPBELL_LINES])?;
-    let (modes, model, warnings) = diagram(scene.clone(), time, command)?;
+    let (modes, model, warnings) = diagram(scene.clone().moving_by_modes(), time, command)?;
     let diagram = Diagram {
         modes,
         warnings,

@@ -43,7 +43,7 @@ pub fn campbell(
     let name = scene.bearings[0].name.clone();
     let others = !scene.bearings.iter().all(is_like);
     let laws = laws(&scene.effects);
-    let (modes, assembly, warnings) = diagram(scene, speeds, number)?;
+    let (modes, assembly, warnings) = diagram(scene.moving_by_modes(), speeds, number)?;
     let note = others.then(|| format!("the lines of cage and ball pass are those of bearing {name:?}"));
     let diagram = Diagram {
         modes,

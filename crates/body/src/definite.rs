@@ -3,7 +3,7 @@
 use solver::{SolverError, Symbolic, angular_dissection, expand};
 use sprs::CsMat;
 
-use crate::error::{AXES, SurroundingError};
+use crate::error::{AXES, SurroundingError, direction};
 use crate::matrix::MatrixBody;
 
 /// Largest force by a translation over the sum of the sizes of all terms of its row: entries with seven digits.
@@ -24,11 +24,12 @@ impl MatrixBody {
         let n = self.places.len() as f64;
         let middle = [0, 1, 2].map(|c| self.places.iter().map(|x| x[c]).sum::<f64>() / n);
         for motion in 0..6 {
-            let moved: Vec<f64> = self
-                .places
-                .iter()
-                .flat_map(|x| rigid_motion(motion, [0, 1, 2].map(|c| x[c] - middle[c])))
-                .collect();
+            let of_rows = |(x, &is_rotation): (&[f64; 3], &bool)| match is_rotation {
+                true => rotation(motion),
+                false => rigid_motion(motion, [0, 1, 2].map(|c| x[c] - middle[c])),
+            };
+            let rows = self.places.iter().zip(&self.is_rotation);
+            let moved: Vec<f64> = rows.flat_map(of_rows).collect();
             let (dof, force, share) = self.strained_most(&moved);
             let limit = if motion < 3 { OF_TRANSLATION } else { OF_ROTATION };
             if share <= limit {
@@ -39,12 +40,14 @@ impl MatrixBody {
                 0..3 => (format!("along {axis}"), "m"),
                 _ => (format!("about {axis}"), "rad"),
             };
-            let (node, direction) = (self.tags[dof / 3], AXES[dof % 3]);
+            let (node, direction) = (self.tags[dof / 3], direction(&self.is_rotation, dof));
+            let unit = if self.is_rotation[dof / 3] { "N m" } else { "N" };
             return Err(SurroundingError::StrainedByMotion {
                 body: name.to_string(),
                 found: format!(
-                    "moved as a whole {motion}, which should strain nothing, it asks for {force:.3e} N at node {node} \
-                     in {direction} per {per}, {share:.1e} of the entries of its row; expected at most {limit:.0e}"
+                    "moved as a whole {motion}, which should strain nothing, it asks for {force:.3e} {unit} at node \
+                     {node} in {direction} per {per}, {share:.1e} of the entries of its row; expected at most \
+                     {limit:.0e}"
                 ),
             });
         }
@@ -81,6 +84,11 @@ fn rigid_motion(motion: usize, [x, y, z]: [f64; 3]) -> [f64; 3] {
     }
 }
 
+/// The rotation of a unit translation or rotation.
+fn rotation(motion: usize) -> [f64; 3] {
+    [3, 4, 5].map(|own| if own == motion { 1.0 } else { 0.0 })
+}
+
 /// Fails where the mass of the free dofs is not positive, by its Cholesky factor. `pairs` are nodes with a common
 /// entry.
 pub(crate) fn require_positive_mass(
@@ -102,7 +110,7 @@ pub(crate) fn require_positive_mass(
             Err(SurroundingError::MassNotPositive {
                 body: name.to_string(),
                 node: matrix.tags[free[row] / 3],
-                axis: AXES[free[row] % 3],
+                axis: direction(&matrix.is_rotation, free[row]),
             })
         }
         Err(source) => Err(SurroundingError::Solver {

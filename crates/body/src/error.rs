@@ -9,6 +9,18 @@ use thiserror::Error;
 
 /// Directions, for messages.
 pub(crate) const AXES: [&str; 3] = ["x", "y", "z"];
+/// Rotations, for messages.
+const ROTATIONS: [&str; 3] = ["rx", "ry", "rz"];
+
+/// The direction of a row, for messages; `is_rotation` of each three of them, of no rotations empty.
+pub(crate) fn direction(is_rotation: &[bool], row: usize) -> &'static str {
+    let names = if is_rotation.get(row / 3) == Some(&true) {
+        ROTATIONS
+    } else {
+        AXES
+    };
+    names[row % 3]
+}
 
 /// Why there is no body, or no joint of it with a ring.
 #[derive(Debug, Error)]
@@ -172,6 +184,19 @@ pub enum SurroundingError {
         beside_mm: f64,
         /// Width of the ring's seat, mm.
         width_mm: f64,
+        /// Allowed distance, mm.
+        most_mm: f64,
+    },
+    /// A reference node that is not on the axis of the ring.
+    #[error(
+        "{what} lies {off_mm:.4} mm off the z axis, that of the ring in its seat; expected at most {most_mm:.4} mm: \
+         give the file `nodes` in a frame whose z is the axis of the seat, or check reference_node and length_unit"
+    )]
+    OffAxis {
+        /// The node.
+        what: String,
+        /// Distance from the axis, mm.
+        off_mm: f64,
         /// Allowed distance, mm.
         most_mm: f64,
     },

@@ -9,12 +9,14 @@ const RADIUS_TOLERANCE: f64 = 2e-3;
 const WIDTH_TOLERANCE: f64 = 1e-2;
 /// Allowed distance along z of the middles of ring and seat, share of the width: a chamfer.
 const PLACE_TOLERANCE: f64 = 0.1;
+/// The same of a reference node, which may stand anywhere in the ring.
+const REFERENCE_TOLERANCE: f64 = 0.5;
 
 /// A seat of a body and the functions that are tied there.
 #[derive(Clone, Debug)]
 pub struct BodySeat {
-    /// Facet group; empty of a body from matrices.
-    pub group: String,
+    /// Facet group, or the file of its nodes; empty of the only seat of a body from matrices.
+    pub name: String,
     /// Functions in the coordinates of its ring.
     pub space: SeatSpace,
     /// Where the middle of the seat stands in the body, m along its ring's z; None: in its own middle.
@@ -26,10 +28,15 @@ pub struct BodySeat {
 impl BodySeat {
     /// For messages.
     fn words(&self) -> String {
-        match self.group.as_str() {
+        match self.name.as_str() {
             "" => "the seat".to_string(),
-            group => format!("the seat \"{group}\""),
+            name => format!("the seat \"{name}\""),
         }
+    }
+
+    /// The same with its body.
+    pub(crate) fn of_body(&self, body: &str) -> String {
+        format!("{} of body \"{body}\"", self.words())
     }
 }
 
@@ -45,15 +52,19 @@ pub(crate) struct SeatJoint {
 }
 
 /// Where the ring's middle stands along the seat whose own middle is `middle`, m.
-fn middle_of_ring(what: &str, seat: &BodySeat, middle: f64) -> Result<f64, SurroundingError> {
+fn middle_of_ring(
+    what: &str,
+    seat: &BodySeat,
+    (middle, tolerance): (f64, f64),
+) -> Result<f64, SurroundingError> {
     let of_ring = seat.middle.unwrap_or(middle);
     let (beside, width) = ((of_ring - middle).abs(), 2.0 * seat.space.half_width);
-    if beside > PLACE_TOLERANCE * width {
+    if beside > tolerance * width {
         return Err(SurroundingError::Beside {
             what: what.to_string(),
             beside_mm: 1e3 * beside,
             width_mm: 1e3 * width,
-            most_mm: 1e3 * PLACE_TOLERANCE * width,
+            most_mm: 1e3 * tolerance * width,
         });
     }
     Ok(of_ring)
@@ -67,7 +78,7 @@ pub(crate) fn joint(
     places: &[[f64; 3]],
     tags: &[u64],
 ) -> Result<SeatJoint, SurroundingError> {
-    let what = format!("{} of body \"{body}\"", seat.words());
+    let what = seat.of_body(body);
     let sign = if seat.is_turned { -1.0 } else { 1.0 };
     let in_ring = |node: usize| {
         let [x, y, z] = places[node];
@@ -97,7 +108,7 @@ pub(crate) fn joint(
             advice: mesh_advice::WIDTH,
         });
     }
-    let middle = middle_of_ring(&what, seat, cylinder.middle())?;
+    let middle = middle_of_ring(&what, seat, (cylinder.middle(), PLACE_TOLERANCE))?;
     let shift = space.middle - middle;
     let place = |node: usize| {
         let [x, y, z] = in_ring(node);
@@ -110,6 +121,38 @@ pub(crate) fn joint(
     Ok(SeatJoint {
         functions,
         shift,
+        middle: sign * middle,
+        is_turned: seat.is_turned,
+    })
+}
+
+/// The functions of a seat that moves with a reference node at a place of the body, m. `rows` are the numbers of the
+/// two threes of rows of the node.
+pub(crate) fn reference_joint(
+    body: &str,
+    seat: &BodySeat,
+    place: [f64; 3],
+    rows: [usize; 2],
+) -> Result<SeatJoint, SurroundingError> {
+    let what = seat.of_body(body);
+    let sign = if seat.is_turned { -1.0 } else { 1.0 };
+    let [x, y, z] = [place[0], sign * place[1], sign * place[2]];
+    let (off, most) = (x.hypot(y), RADIUS_TOLERANCE * seat.space.radius);
+    if off > most {
+        return Err(SurroundingError::OffAxis {
+            what,
+            off_mm: 1e3 * off,
+            most_mm: 1e3 * most,
+        });
+    }
+    let middle = middle_of_ring(&what, seat, (z, REFERENCE_TOLERANCE))?;
+    let mut functions = SeatFunctions::of_reference(seat.space, rows, [-x, -y, middle - z]);
+    if seat.is_turned {
+        functions.half_turn();
+    }
+    Ok(SeatJoint {
+        functions,
+        shift: seat.space.middle - middle,
         middle: sign * middle,
         is_turned: seat.is_turned,
     })

@@ -16,6 +16,7 @@ mod error;
 mod frame;
 mod joint;
 pub mod matrix;
+mod nodes;
 mod on_shaft;
 mod oscillators;
 mod rigid_part;

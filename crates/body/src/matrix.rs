@@ -1,22 +1,27 @@
-//! A body from another program: its stiffness and mass as Matrix Market, its nodes and the nodes of its seat as CSV.
+//! A body from another program: its stiffness and mass as Matrix Market, its nodes and those of its seats as CSV.
 //!
 //! ```text
-//! K.mtx       %%MatrixMarket matrix coordinate real symmetric|general; rows ux uy uz of each node of nodes.csv
-//! nodes.csv   node,x,y,z     one line per node, in the order of the rows
-//! seat.csv    node[,area]    nodes of the seat; without areas those of their Voronoi cells on the cylinder
+//! K.mtx       %%MatrixMarket matrix coordinate real symmetric|general; rows ux uy uz of each node of nodes.csv, and
+//!             rx ry rz of nodes with six dofs
+//! nodes.csv   node,x,y,z[,dofs]   one line per node, in the order of the rows; dofs 3 or 6, default 3
+//! seat.csv    node[,area]    nodes of a seat; without areas those of their Voronoi cells on the cylinder
 //! M.mtx       the same of the mass, where the body moves
 //! fixed.csv   node           nodes that are held; none if the matrix is held already
 //! ```
 //! Lengths are in one unit and forces per length in another, which the scene states; areas in the square of the
-//! first. Lines that begin with # and a first line of names are skipped.
+//! first. Entries of a rotation with a displacement are in the unit of the matrix times that of lengths, those of two
+//! rotations in the unit times its square. Lines that begin with # and a first line of names are skipped.
+//!
+//! Rows are kept in threes: a node with six dofs is two of them at one place, its displacement and its rotation.
 
-use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use sprs::{CsMat, TriMat};
 
 use crate::areas::cylinder_areas;
-use crate::error::{AXES, SurroundingError};
+use crate::error::{SurroundingError, direction};
+use crate::joint::{BodySeat, SeatJoint, joint, reference_joint, refuse_fixed};
+use crate::nodes::{NumberedNodes, SeatNode, finite, table, text_of, wrong};
 use crate::seat::SeatCylinder;
 
 /// Allowed difference of mirrored entries, over the geometric mean of their diagonal entries.
@@ -32,16 +37,25 @@ pub struct MatrixFiles {
     pub stiffness: PathBuf,
     /// Mass, of a body that moves, and its unit, kg.
     pub mass: Option<(PathBuf, f64)>,
-    /// NumberedNodes.
+    /// Nodes.
     pub nodes: PathBuf,
-    /// NumberedNodes of the seat.
-    pub seat_nodes: PathBuf,
-    /// NumberedNodes that are held.
+    /// Where each seat is.
+    pub seats: Vec<MatrixSeat>,
+    /// Nodes that are held.
     pub fixed_nodes: Option<PathBuf>,
     /// Unit of lengths, m.
     pub length_unit: f64,
     /// Unit of stiffness, N/m.
     pub stiffness_unit: f64,
+}
+
+/// A seat among the nodes of a body.
+#[derive(Clone, Debug, PartialEq)]
+pub enum MatrixSeat {
+    /// File of the nodes of its cylinder.
+    Nodes(PathBuf),
+    /// Number of the node with six dofs with which it moves, such as the reference node of an RBE3.
+    Reference(u64),
 }
 
 /// A body as its matrices say.
@@ -51,60 +65,57 @@ pub struct MatrixBody {
     pub stiffness: CsMat<f64>,
     /// Mass, kg, all entries.
     pub mass: Option<CsMat<f64>>,
-    /// NumberedNodes, m.
+    /// Place of each three of rows, m.
     pub places: Vec<[f64; 3]>,
-    /// Their numbers.
+    /// Numbers of their nodes.
     pub tags: Vec<u64>,
+    /// Which are rotations, of nodes with six dofs.
+    pub(crate) is_rotation: Vec<bool>,
     /// Which are held.
     pub fixed: Vec<bool>,
-    seat: Vec<(usize, Option<f64>)>,
+    seats: Vec<SeatPlace>,
+}
+
+/// Where a seat is.
+#[derive(Clone, Debug)]
+pub(crate) enum SeatPlace {
+    /// Nodes, ascending, with areas, m^2, where their file has them.
+    Surface(Vec<SeatNode>),
+    /// The displacement of a node with six dofs; its rotation comes next.
+    Reference(usize),
 }
 
 impl MatrixBody {
     /// Reads and checks all files.
     pub fn read(files: &MatrixFiles) -> Result<MatrixBody, SurroundingError> {
-        let (places, tags, number) = read_nodes(files)?;
-        let find = |path: &Path, line: usize, value: f64| {
-            let tag = node_number(path, line, value)?;
-            number.get(&tag).copied().ok_or_else(|| {
-                wrong(
-                    path,
-                    line,
-                    format!(
-                        "node {tag} is not in {}; expected one of its nodes",
-                        files.nodes.display()
-                    ),
-                )
-            })
+        let nodes = NumberedNodes::read(&files.nodes, files.length_unit)?;
+        let seat = |seat: &MatrixSeat| match seat {
+            MatrixSeat::Nodes(path) => nodes.seat(path, files.length_unit).map(SeatPlace::Surface),
+            MatrixSeat::Reference(tag) => nodes.reference(*tag).map(SeatPlace::Reference),
         };
-        let mut seat = Vec::new();
-        for (line, row) in table(&files.seat_nodes, 1..=2, "node or node,area")? {
-            let area = row.get(1).map(|a| a * files.length_unit * files.length_unit);
-            seat.push((find(&files.seat_nodes, line, row[0])?, area));
-        }
-        seat.sort_unstable_by_key(|s| s.0);
-        if let Some(pair) = seat.windows(2).find(|pair| pair[0].0 == pair[1].0) {
-            let twice = format!("node {} stands here twice; expected each once", tags[pair[0].0]);
-            return Err(wrong(&files.seat_nodes, 0, twice));
-        }
-        let mut fixed = vec![false; places.len()];
+        let seats = files.seats.iter().map(seat).collect::<Result<_, _>>()?;
+        let mut fixed = vec![false; nodes.places.len()];
         if let Some(path) = &files.fixed_nodes {
             for (line, row) in table(path, 1..=1, "node")? {
-                fixed[find(path, line, row[0])?] = true;
+                let first = nodes.find(path, line, row[0])?;
+                fixed[first] = true;
+                if nodes.is_rotation.get(first + 1) == Some(&true) {
+                    fixed[first + 1] = true;
+                }
             }
         }
-        let read =
-            |(path, unit): (&PathBuf, f64), what| read_matrix((path, unit), what, (&files.nodes, &tags));
+        let read = |of: (&PathBuf, f64), what| read_matrix((of.0, of.1), files.length_unit, what, &nodes);
         Ok(MatrixBody {
             stiffness: read((&files.stiffness, files.stiffness_unit), "stiffness")?,
             mass: match &files.mass {
                 Some((path, unit)) => Some(read((path, *unit), "mass")?),
                 None => None,
             },
-            places,
-            tags,
+            places: nodes.places,
+            tags: nodes.tags,
+            is_rotation: nodes.is_rotation,
             fixed,
-            seat,
+            seats,
         })
     }
 
@@ -121,15 +132,40 @@ impl MatrixBody {
         }
     }
 
-    /// NumberedNodes of the seat with their areas, m^2, ascending.
-    pub(crate) fn seat_areas(&self, name: &str) -> Result<Vec<(usize, f64)>, SurroundingError> {
-        let what = format!("the seat of body \"{name}\"");
-        let places: Vec<[f64; 3]> = self.seat.iter().map(|&(node, _)| self.places[node]).collect();
-        let tags = self.seat.iter().map(|&(node, _)| self.tags[node]);
-        let cylinder = SeatCylinder::of_nodes(&what, tags.zip(places.iter().copied()))?;
+    /// Number of seats.
+    pub fn n_seats(&self) -> usize {
+        self.seats.len()
+    }
+
+    /// The functions of a seat on the body's side.
+    pub(crate) fn joint(
+        &self,
+        name: &str,
+        (number, seat): (usize, &BodySeat),
+    ) -> Result<SeatJoint, SurroundingError> {
+        let (what, fixed) = (seat.of_body(name), (&self.fixed[..], &self.tags[..]));
+        match &self.seats[number] {
+            SeatPlace::Surface(nodes) => {
+                let areas = self.areas(&what, nodes)?;
+                let made = joint(name, seat, &areas, &self.places, &self.tags)?;
+                refuse_fixed(name, seat, &areas, fixed.0, fixed.1)?;
+                Ok(made)
+            }
+            &SeatPlace::Reference(first) => {
+                refuse_fixed(name, seat, &[(first, 0.0)], fixed.0, fixed.1)?;
+                reference_joint(name, seat, self.places[first], [first, first + 1])
+            }
+        }
+    }
+
+    /// Nodes of a seat with their areas, m^2, ascending. `what` is for messages.
+    fn areas(&self, what: &str, nodes: &[SeatNode]) -> Result<Vec<(usize, f64)>, SurroundingError> {
+        let places: Vec<[f64; 3]> = nodes.iter().map(|&(node, _)| self.places[node]).collect();
+        let tags = nodes.iter().map(|&(node, _)| self.tags[node]);
+        let cylinder = SeatCylinder::of_nodes(what, tags.zip(places.iter().copied()))?;
         let cells = cylinder_areas(&cylinder, &places);
-        let of = |((node, area), cell): (&(usize, Option<f64>), f64)| (*node, area.unwrap_or(cell));
-        Ok(self.seat.iter().zip(cells).map(of).collect())
+        let of = |(&(node, area), cell): (&SeatNode, f64)| (node, area.unwrap_or(cell));
+        Ok(nodes.iter().zip(cells).map(of).collect())
     }
 
     /// Pairs of nodes with a common entry.
@@ -148,102 +184,12 @@ impl MatrixBody {
     }
 }
 
-fn wrong(path: &Path, line: usize, problem: String) -> SurroundingError {
-    SurroundingError::File {
-        path: path.to_path_buf(),
-        line,
-        problem,
-    }
-}
-
-fn text_of(path: &Path) -> Result<String, SurroundingError> {
-    std::fs::read_to_string(path).map_err(|source| SurroundingError::Unreadable {
-        path: path.to_path_buf(),
-        source,
-    })
-}
-
-/// Rows of numbers and their lines.
-fn table(
-    path: &Path,
-    columns: std::ops::RangeInclusive<usize>,
-    expected: &str,
-) -> Result<Vec<(usize, Vec<f64>)>, SurroundingError> {
-    let text = text_of(path)?;
-    let mut rows = Vec::new();
-    for (line, content) in (1..).zip(text.lines()) {
-        let content = content.trim();
-        if content.is_empty() || content.starts_with('#') {
-            continue;
-        }
-        let cells: Vec<&str> = content.split([',', ';', '\t']).map(str::trim).collect();
-        let is_head = rows.is_empty() && cells[0].starts_with(|c: char| c.is_ascii_alphabetic());
-        if is_head {
-            continue;
-        }
-        let numbers: Option<Vec<f64>> = cells.iter().map(|cell| finite(cell)).collect();
-        match numbers.filter(|numbers| columns.contains(&numbers.len())) {
-            Some(numbers) => rows.push((line, numbers)),
-            None => {
-                return Err(wrong(
-                    path,
-                    line,
-                    format!("{content:?} is no row of the table; expected {expected}"),
-                ));
-            }
-        }
-    }
-    Ok(rows)
-}
-
-fn finite(text: &str) -> Option<f64> {
-    text.parse::<f64>().ok().filter(|x| x.is_finite())
-}
-
-fn node_number(path: &Path, line: usize, value: f64) -> Result<u64, SurroundingError> {
-    if value >= 0.0 && value.fract() == 0.0 && value < 9e15 {
-        return Ok(value as u64);
-    }
-    Err(wrong(
-        path,
-        line,
-        format!("{value} is no number of a node; expected 0, 1, 2 ..."),
-    ))
-}
-
-/// Places, m, and numbers of the nodes in their order, and the place in that order of each number.
-type NumberedNodes = (Vec<[f64; 3]>, Vec<u64>, BTreeMap<u64, usize>);
-
-/// Reads the nodes of a body; at least one.
-fn read_nodes(files: &MatrixFiles) -> Result<NumberedNodes, SurroundingError> {
-    let (mut places, mut tags, mut number) = (Vec::new(), Vec::new(), BTreeMap::new());
-    for (line, row) in table(&files.nodes, 4..=4, "node,x,y,z")? {
-        let tag = node_number(&files.nodes, line, row[0])?;
-        if number.insert(tag, places.len()).is_some() {
-            return Err(wrong(
-                &files.nodes,
-                line,
-                format!("node {tag} stands here twice; expected each once"),
-            ));
-        }
-        tags.push(tag);
-        places.push([row[1], row[2], row[3]].map(|x| files.length_unit * x));
-    }
-    if places.is_empty() {
-        return Err(wrong(
-            &files.nodes,
-            0,
-            "no node; expected lines node,x,y,z".to_string(),
-        ));
-    }
-    Ok((places, tags, number))
-}
-
-/// A matrix in SI units with both halves, of the nodes `tags` of the file `nodes`.
+/// A matrix in SI units with both halves.
 fn read_matrix(
     (path, unit): (&Path, f64),
+    length_unit: f64,
     what: &'static str,
-    (nodes, tags): (&Path, &[u64]),
+    nodes: &NumberedNodes<'_>,
 ) -> Result<CsMat<f64>, SurroundingError> {
     let text = text_of(path)?;
     let mut lines = (1..).zip(text.lines());
@@ -252,15 +198,24 @@ fn read_matrix(
     let mut rows = lines.filter(|(_, line)| !line.trim().is_empty() && !line.starts_with('%'));
     let numbers = |line: &str| line.split_whitespace().map(finite).collect::<Option<Vec<f64>>>();
     let (line, size) = rows.next().unwrap_or((1, ""));
-    let n = 3 * tags.len();
-    let entries = n_entries((path, line), size, (nodes, tags))?;
+    let n = 3 * nodes.tags.len();
+    let entries = n_entries((path, line), size, nodes)?;
+    // Displacements and rotations have other units.
+    let unit_of = |row: usize| {
+        if nodes.is_rotation[row / 3] {
+            length_unit
+        } else {
+            1.0
+        }
+    };
     let mut triplets = TriMat::new((n, n));
     let mut count = 0.0;
     for (line, row) in rows {
         let inside = |x: f64| x >= 1.0 && x <= n as f64 && x.fract() == 0.0;
         match numbers(row).as_deref() {
             Some(&[i, j, value]) if inside(i) && inside(j) => {
-                let (i, j, value) = (i as usize - 1, j as usize - 1, unit * value);
+                let (i, j) = (i as usize - 1, j as usize - 1);
+                let value = unit * unit_of(i) * unit_of(j) * value;
                 triplets.add_triplet(i, j, value);
                 if is_symmetric && i != j {
                     triplets.add_triplet(j, i, value);
@@ -282,7 +237,7 @@ fn read_matrix(
         ));
     }
     let matrix: CsMat<f64> = triplets.to_csr();
-    require_sound((path, what), &matrix, tags)?;
+    require_sound((path, what), &matrix, nodes)?;
     Ok(matrix)
 }
 
@@ -314,21 +269,26 @@ fn is_symmetric(path: &Path, head: &str) -> Result<bool, SurroundingError> {
     }
 }
 
-/// Number of entries by the line of the sizes, which must be those of three dofs of every node.
+/// Number of entries by the line of the sizes, which must be those of all dofs of the nodes.
 fn n_entries(
     (path, line): (&Path, usize),
     size: &str,
-    (nodes, tags): (&Path, &[u64]),
+    nodes: &NumberedNodes<'_>,
 ) -> Result<f64, SurroundingError> {
-    let n = 3 * tags.len();
+    let n = 3 * nodes.tags.len();
     let numbers = size.split_whitespace().map(finite).collect::<Option<Vec<f64>>>();
     match numbers.as_deref() {
         Some([r, c, entries]) if *r == n as f64 && *c == n as f64 => Ok(*entries),
         Some([r, c, _]) => {
             let problem = format!(
-                "the matrix is {r} x {c}, but {} has {} nodes; expected {n} x {n}, rows ux uy uz of every node",
-                nodes.display(),
-                tags.len()
+                "the matrix is {r} x {c}, but {} has {} nodes; expected {n} x {n}, rows ux uy uz of every node{}",
+                nodes.path.display(),
+                nodes.first.len(),
+                if nodes.is_rotation.contains(&true) {
+                    ", and rx ry rz of those with 6 dofs"
+                } else {
+                    ""
+                }
             );
             Err(wrong(path, line, problem))
         }
@@ -344,9 +304,9 @@ fn n_entries(
 fn require_sound(
     (path, what): (&Path, &str),
     matrix: &CsMat<f64>,
-    tags: &[u64],
+    nodes: &NumberedNodes<'_>,
 ) -> Result<(), SurroundingError> {
-    let place = |dof: usize| (tags[dof / 3], AXES[dof % 3]);
+    let place = |dof: usize| (nodes.tags[dof / 3], direction(&nodes.is_rotation, dof));
     let diagonal: Vec<f64> = (0..matrix.rows())
         .map(|i| matrix.get(i, i).copied().unwrap_or(0.0))
         .collect();

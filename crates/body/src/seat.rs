@@ -16,6 +16,10 @@
 //! t(theta, zeta) = phi^T M^-1 lam (Pa), smooth whatever the mesh.
 //!
 //! Order of functions: 3 (K n' + j) + component, with n' = 0, 1 (cos theta), 2 (sin theta), 3 ..., K = P + 1.
+//!
+//! Where 2 N nodes of a ring stand evenly round it, sin N (theta - theta_0) is zero at all of them, theta_0 being the
+//! azimuth of one. Of the order N there is only cos N (theta - theta_0) then. With P + 1 rows of nodes the functions
+//! are all motions of the nodes.
 
 use dense::DenseCholesky;
 
@@ -27,6 +31,8 @@ use crate::rows::SeatRows;
 const WORST_CONDITION: f64 = 1e6;
 /// Radii of nodes of a cylinder may differ by this share: chords of coarse quadratic tetrahedra.
 const ROUNDNESS: f64 = 1e-3;
+/// Largest sine of an order at a node that is zero: one that is not makes M that much worse, to the square.
+const NO_SINE: f64 = 1e-3;
 
 /// Which functions tie a seat.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -34,6 +40,13 @@ pub enum SeatBasis {
     /// Fourier x Legendre.
     Harmonics {
         /// Largest n.
+        harmonics: usize,
+        /// Largest degree j.
+        across: usize,
+    },
+    /// The same, but of the order `harmonics` only the cosine through a node of the ring.
+    HalfRound {
+        /// Largest n, half the number of nodes round the ring.
         harmonics: usize,
         /// Largest degree j.
         across: usize,
@@ -47,15 +60,24 @@ impl SeatBasis {
     pub fn n_functions(self) -> usize {
         match self {
             SeatBasis::Harmonics { harmonics, across } => 3 * (2 * harmonics + 1) * (across + 1),
+            SeatBasis::HalfRound { harmonics, across } => 3 * (2 * harmonics) * (across + 1),
             SeatBasis::Rigid => 6,
+        }
+    }
+
+    /// Largest n and largest j; None for rigid ones.
+    pub fn largest(self) -> Option<[usize; 2]> {
+        match self {
+            SeatBasis::Harmonics { harmonics, across } | SeatBasis::HalfRound { harmonics, across } => {
+                Some([harmonics, across])
+            }
+            SeatBasis::Rigid => None,
         }
     }
 
     /// Order n and degree j of a function; None for rigid ones.
     pub fn order_and_degree(self, function: usize) -> Option<[usize; 2]> {
-        let SeatBasis::Harmonics { across, .. } = self else {
-            return None;
-        };
+        let [_, across] = self.largest()?;
         let scalar = function / 3;
         Some([(scalar / (across + 1)).div_ceil(2), scalar % (across + 1)])
     }
@@ -122,6 +144,8 @@ pub struct SeatSpace {
     pub half_width: f64,
     /// Its radius, m: the unit of arms.
     pub radius: f64,
+    /// Azimuth of a crest of the only function of the last order, rad; 0 where there are two.
+    pub crest: f64,
 }
 
 impl SeatSpace {
@@ -143,25 +167,46 @@ impl SeatSpace {
             middle: cylinder.middle(),
             half_width: 0.5 * cylinder.width(),
             radius: cylinder.radius,
+            crest: 0.0,
+        }
+    }
+
+    /// The same on a ring whose seat has nodes at these places: of an order whose sine is zero at all of them only the
+    /// cosine is left.
+    pub fn on_ring(self, mut places: impl Iterator<Item = [f64; 3]>) -> SeatSpace {
+        let (SeatBasis::Harmonics { harmonics, across }, Some(first)) = (self.basis, places.next()) else {
+            return self;
+        };
+        let crest = first[1].atan2(first[0]);
+        let phase = |x: [f64; 3]| harmonics as f64 * (x[1].atan2(x[0]) - crest);
+        if places.any(|x| phase(x).sin().abs() > NO_SINE) {
+            return self;
+        }
+        SeatSpace {
+            basis: SeatBasis::HalfRound { harmonics, across },
+            crest,
+            ..self
         }
     }
 
     /// (1 | cos | sin)(n theta) P_j at an azimuth, rad, and a place across in half widths from the middle.
     pub fn scalars(&self, azimuth: f64, across: f64) -> Vec<f64> {
-        let SeatBasis::Harmonics {
-            harmonics,
-            across: degree,
-        } = self.basis
-        else {
+        let Some([harmonics, degree]) = self.basis.largest() else {
             return Vec::new();
         };
+        let is_half = matches!(self.basis, SeatBasis::HalfRound { .. });
         let legendre = legendre(degree, across);
         let mut values = Vec::with_capacity(self.basis.n_functions() / 3);
         values.extend(&legendre);
-        for n in 1..=harmonics {
+        let both = if is_half { harmonics - 1 } else { harmonics };
+        for n in 1..=both {
             let (sin, cos) = (n as f64 * azimuth).sin_cos();
             values.extend(legendre.iter().map(|p| cos * p));
             values.extend(legendre.iter().map(|p| sin * p));
+        }
+        if is_half {
+            let cos = (harmonics as f64 * (azimuth - self.crest)).cos();
+            values.extend(legendre.iter().map(|p| cos * p));
         }
         values
     }
@@ -224,7 +269,7 @@ impl SeatFunctions {
     ) -> Result<SeatFunctions, SurroundingError> {
         let nodes: Vec<usize> = areas.iter().map(|a| a.0).collect();
         let n_scalars = match space.basis {
-            SeatBasis::Harmonics { .. } => space.basis.n_functions() / 3,
+            SeatBasis::Harmonics { .. } | SeatBasis::HalfRound { .. } => space.basis.n_functions() / 3,
             SeatBasis::Rigid => 6,
         };
         let too_few = || SurroundingError::TooFewNodes {
@@ -236,7 +281,9 @@ impl SeatFunctions {
         let places: Vec<[f64; 3]> = nodes.iter().map(|&node| place(node)).collect();
         let weights: Vec<f64> = areas.iter().map(|a| a.1).collect();
         let (rows, inverse) = match space.basis {
-            SeatBasis::Harmonics { .. } => harmonic_rows(&space, &places, &weights),
+            SeatBasis::Harmonics { .. } | SeatBasis::HalfRound { .. } => {
+                harmonic_rows(&space, &places, &weights)
+            }
             SeatBasis::Rigid => rigid_rows(&space, &places, &weights)
                 .map(|rows| (SeatRows::whole(places.len(), rows), Vec::new())),
         }
@@ -247,6 +294,26 @@ impl SeatFunctions {
             rows,
             inverse,
         })
+    }
+
+    /// The six rigid motions of a seat that moves with a node, whose rows are its displacement and then its rotation.
+    /// `nodes` are the numbers of these two threes of rows, `arm` leads from the node to the middle of the seat, m.
+    pub(crate) fn of_reference(space: SeatSpace, nodes: [usize; 2], arm: [f64; 3]) -> SeatFunctions {
+        let [x, y, z] = arm;
+        // Rows over u and theta: u + theta x arm, and theta.
+        let turned = [[0.0, z, -y], [-z, 0.0, x], [y, -x, 0.0]];
+        let mut rows = vec![0.0; 36];
+        for i in 0..3 {
+            rows[6 * i + i] = 1.0;
+            rows[6 * i + 3..6 * i + 6].copy_from_slice(&turned[i]);
+            rows[6 * (3 + i) + 3 + i] = 1.0;
+        }
+        SeatFunctions {
+            space,
+            nodes: nodes.to_vec(),
+            rows: SeatRows::whole(2, rows),
+            inverse: Vec::new(),
+        }
     }
 
     /// Number of functions.

@@ -12,7 +12,7 @@ use sprs::CsMat;
 
 use crate::carried::Carried;
 use crate::definite::require_positive_mass;
-use crate::error::{AXES, SurroundingError, mesh_advice};
+use crate::error::{SurroundingError, direction, mesh_advice};
 use crate::joint::{BodySeat, SeatJoint, joint, refuse_fixed};
 use crate::matrix::MatrixBody;
 use crate::seat::SeatFunctions;
@@ -57,6 +57,8 @@ struct Unfactored<'a> {
     stiffness: &'a CsMat<f64>,
     places: &'a [[f64; 3]],
     tags: &'a [u64],
+    /// Which threes of rows are rotations; empty: none.
+    is_rotation: &'a [bool],
     fixed: Vec<bool>,
     /// Elements, for the order of elimination.
     cliques: &'a [usize],
@@ -82,8 +84,8 @@ impl Surrounding {
         }
         let mut joints = Vec::new();
         for seat in seats {
-            require_group(name, &mesh, &seat.group, "the `group` of its seat")?;
-            let areas = fem::facet_node_weights(&mesh, mesh.group(&seat.group));
+            require_group(name, &mesh, &seat.name, "the `group` of its seat")?;
+            let areas = fem::facet_node_weights(&mesh, mesh.group(&seat.name));
             joints.push(joint(name, seat, &areas, &mesh.nodes, &origin.node_tags)?);
             refuse_fixed(name, seat, &areas, &is_fixed, &origin.node_tags)?;
         }
@@ -97,6 +99,7 @@ impl Surrounding {
             stiffness: &stiffness,
             places: &mesh.nodes,
             tags: &origin.node_tags,
+            is_rotation: &[],
             fixed: is_fixed,
             cliques: &mesh.connectivity,
             clique: mesh.kind.n_nodes(),
@@ -106,20 +109,24 @@ impl Surrounding {
         Ok(body)
     }
 
-    /// A body of the matrices of another program, with one seat.
+    /// A body of the matrices of another program; `seats` as its files name them.
     pub fn of_matrix(
         name: &str,
         matrix: &MatrixBody,
-        seat: &BodySeat,
+        seats: &[BodySeat],
     ) -> Result<Surrounding, SurroundingError> {
-        Surrounding::of_nodes(name, matrix, seat).map_err(SurroundingError::of_matrices)
+        assert_eq!(seats.len(), matrix.n_seats(), "a seat for each file of nodes");
+        Surrounding::of_nodes(name, matrix, seats).map_err(SurroundingError::of_matrices)
     }
 
-    fn of_nodes(name: &str, matrix: &MatrixBody, seat: &BodySeat) -> Result<Surrounding, SurroundingError> {
+    fn of_nodes(
+        name: &str,
+        matrix: &MatrixBody,
+        seats: &[BodySeat],
+    ) -> Result<Surrounding, SurroundingError> {
         let start = Instant::now();
-        let areas = matrix.seat_areas(name)?;
-        let joints = vec![joint(name, seat, &areas, &matrix.places, &matrix.tags)?];
-        refuse_fixed(name, seat, &areas, &matrix.fixed, &matrix.tags)?;
+        let joint = |seat| matrix.joint(name, seat);
+        let joints = seats.iter().enumerate().map(joint).collect::<Result<_, _>>()?;
         matrix.require_free(name)?;
         let pairs = matrix.neighbours();
         let held = Unfactored {
@@ -127,6 +134,7 @@ impl Surrounding {
             stiffness: &matrix.stiffness,
             places: &matrix.places,
             tags: &matrix.tags,
+            is_rotation: &matrix.is_rotation,
             fixed: matrix.fixed.clone(),
             cliques: &pairs,
             clique: 2,
@@ -242,6 +250,15 @@ impl Unfactored<'_> {
             .filter(|&node| self.fixed[node])
             .map(|node| self.places[node])
             .collect();
+        // Without its rotation a node holds all of the body.
+        if self
+            .is_rotation
+            .iter()
+            .zip(&self.fixed)
+            .any(|(r, fixed)| *r && *fixed)
+        {
+            return Ok(());
+        }
         let Some(first) = fixed.first() else {
             // A matrix may hold its supports itself; if not, its factor says so.
             return Ok(());
@@ -271,7 +288,7 @@ impl Unfactored<'_> {
                 SurroundingError::NotHeld {
                     body: self.name.clone(),
                     node: self.tags[free[row] / 3],
-                    axis: AXES[free[row] % 3],
+                    axis: direction(self.is_rotation, free[row]),
                     advice: mesh_advice::HELD,
                 }
             }

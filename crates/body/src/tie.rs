@@ -174,7 +174,7 @@ impl SeatTraction {
 
     /// Shares of the last functions in the energy.
     pub fn convergence(&self, basis: SeatBasis) -> TieConvergence {
-        let SeatBasis::Harmonics { harmonics, across } = basis else {
+        let Some([harmonics, across]) = basis.largest() else {
             return TieConvergence::default();
         };
         let share = |is_last: &dyn Fn([usize; 2]) -> bool| {

@@ -104,7 +104,9 @@ impl HeldSeats<'_> {
     /// Its modes up to a frequency.
     fn below(&self, below_hz: f64) -> Result<Eigenpairs, SurroundingError> {
         let most = (TAU * below_hz).powi(2);
-        let mut wanted = FIRST_SEARCH;
+        // What the seats leave free has no more; beyond are the seats themselves, at frequencies of round-off.
+        let most_pairs = self.n().saturating_sub(self.body.n_functions());
+        let mut wanted = FIRST_SEARCH.min(most_pairs);
         loop {
             let found = lowest_pairs(self, LanczosSettings::new(wanted, BLOCK), &mut |_| ());
             let mut found = found.map_err(|source| SurroundingError::Modes {
@@ -113,7 +115,7 @@ impl HeldSeats<'_> {
                 source,
             })?;
             let kept = found.values.iter().take_while(|value| **value <= most).count();
-            if kept < found.values.len() || found.values.len() < wanted {
+            if kept < found.values.len() || found.values.len() < wanted || wanted == most_pairs {
                 found.values.truncate(kept);
                 found.vectors.truncate(kept * self.n());
                 return Ok(found);
@@ -125,7 +127,7 @@ impl HeldSeats<'_> {
                     most: MOST_MODES,
                 });
             }
-            wanted *= 2;
+            wanted = (2 * wanted).min(most_pairs);
         }
     }
 }

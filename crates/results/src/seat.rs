@@ -56,8 +56,9 @@ pub struct SeatSummary {
     energy_share_last_degree: f64,
     /// Strain energy that this seat puts into the body, all of it where it is the only seat; part of that of the rings.
     body_energy_j: f64,
-    largest_pressure_pa: f64,
-    smallest_pressure_pa: f64,
+    /// Of a seat that moves as a rigid one nothing says how its forces spread.
+    largest_pressure_pa: Option<f64>,
+    smallest_pressure_pa: Option<f64>,
     body_dofs: usize,
     body_bytes: usize,
     /// Assembly, factor and all columns of the body.
@@ -158,7 +159,7 @@ impl SeatState {
     /// Writes the table, says how converged the joint is, and makes the entry of the summary. Rank 0 writes for all.
     pub fn finish(&self, dir: &Path) -> anyhow::Result<SeatSummary> {
         let points = self.points();
-        if Communicator::world().is_root() {
+        if Communicator::world().is_root() && !points.is_empty() {
             let text = table(&points);
             let name = SEAT_TABLES[self.side.index()];
             whole::write(&dir.join(name), text.as_bytes(), |old| whole::holds(old, HEAD))?;
@@ -183,10 +184,8 @@ impl SeatState {
             .as_ref()
             .expect("a joint that carries something has a body");
         let share = self.traction.convergence(self.tie.space.basis);
-        let (harmonics, across) = match self.tie.space.basis {
-            SeatBasis::Harmonics { harmonics, across } => (harmonics, across),
-            SeatBasis::Rigid => (1, 1),
-        };
+        // Rigid motions are of the first order and degree.
+        let [harmonics, across] = self.tie.space.basis.largest().unwrap_or([1, 1]);
         let pressures = || points.iter().map(|p| -p.traction[0]);
         SeatSummary {
             body: body.name.clone(),
@@ -196,16 +195,20 @@ impl SeatState {
             energy_share_last_orders: share.last_orders,
             energy_share_last_degree: share.last_degree,
             body_energy_j: self.energy,
-            largest_pressure_pa: pressures().fold(f64::NEG_INFINITY, f64::max),
-            smallest_pressure_pa: pressures().fold(f64::INFINITY, f64::min),
+            largest_pressure_pa: pressures().reduce(f64::max),
+            smallest_pressure_pa: pressures().reduce(f64::min),
             body_dofs: body.n_dofs,
             body_bytes: body.bytes,
             body_seconds: body.seconds,
         }
     }
 
+    /// The grid of the table; empty of a seat that moves as a rigid one.
     fn points(&self) -> Vec<SeatPoint> {
         let space = &self.tie.space;
+        if space.basis == SeatBasis::Rigid {
+            return Vec::new();
+        }
         let traction = self.functions.traction(&self.traction.forces);
         let mut points = Vec::with_capacity(GRID[0] * GRID[1]);
         for i in 0..GRID[0] {

@@ -3,14 +3,14 @@
 use std::sync::Arc;
 
 use assembly::Orientation;
-use body::matrix::MatrixBody;
+use body::matrix::{MatrixBody, MatrixSeat};
 use body::{BodySeat, SeatCylinder, SeatSpace, SeatTie, Surrounding};
 use contact::Side;
 use dynamics::RingModel;
 use fem::Material;
 
 use crate::error::BuildError;
-use crate::tables::{BearingOnShaft, BodySource, RingName, Scene, SceneBody};
+use crate::tables::{BearingOnShaft, BodySource, RingName, Scene, SceneBody, SeveralScene};
 
 /// Rings of a bearing, inner first.
 pub type Rings = [Option<Arc<RingModel>>; 2];
@@ -21,6 +21,26 @@ const SEAT_DISTANCE_TOLERANCE: f64 = 0.05;
 /// The same of inner rings, which stand off nothing.
 const SHAFT_DISTANCE_TOLERANCE: f64 = 1e-3;
 
+impl Scene {
+    /// The same where the natural modes of its bodies are wanted although it does not move: modes over the speed.
+    pub fn moving_by_modes(mut self) -> Scene {
+        for body in self.bodies.iter_mut().flatten() {
+            body.reads_mass = true;
+        }
+        self
+    }
+}
+
+impl SeveralScene {
+    /// The same of all bearings.
+    pub fn moving_by_modes(mut self) -> SeveralScene {
+        for bearing in &mut self.bearings {
+            bearing.scene = bearing.scene.clone().moving_by_modes();
+        }
+        self
+    }
+}
+
 /// The joint of a ring with its body in the scene, if there is one of its own: reads, factors and condenses it.
 pub fn seat_tie(scene: &Scene, side: Side, ring: &RingModel) -> Result<Option<Arc<SeatTie>>, BuildError> {
     let body = scene.bodies[side.index()].as_ref();
@@ -28,7 +48,7 @@ pub fn seat_tie(scene: &Scene, side: Side, ring: &RingModel) -> Result<Option<Ar
         return Ok(None);
     };
     let seats = [body_seat(body, ring)?];
-    let made = surrounding(body, &seats)?;
+    let made = surrounding(&[body], &seats)?;
     let body_of_ring = Arc::new(carried(made, body, &[ring])?);
     Ok(ties(body, body_of_ring)?.pop())
 }
@@ -63,9 +83,10 @@ fn tie_side(
         let in_body = |i: &usize| shared(i).is_some_and(|other| other.name == body.name);
         let (own, others): (Vec<usize>, Vec<usize>) = left.into_iter().partition(in_body);
         left = others;
-        let mut seats = Vec::new();
+        let (mut seats, mut of_seats) = (Vec::new(), Vec::new());
         for i in &own {
             if let (Some(of_bearing), Some(ring)) = (shared(i), &rings[*i][at]) {
+                of_seats.push(of_bearing);
                 seats.push(BodySeat {
                     is_turned: bearings[*i].orientation != bearings[first].orientation,
                     ..body_seat(of_bearing, ring)?
@@ -73,7 +94,7 @@ fn tie_side(
             }
         }
         let sitting: Vec<&RingModel> = own.iter().filter_map(|&i| rings[i][at].as_deref()).collect();
-        let made = Arc::new(carried(surrounding(body, &seats)?, body, &sitting)?);
+        let made = Arc::new(carried(surrounding(&of_seats, &seats)?, body, &sitting)?);
         let places: Vec<f64> = own
             .iter()
             .zip(&seats)
@@ -137,8 +158,8 @@ fn body_seat(body: &SceneBody, ring: &RingModel) -> Result<BodySeat, BuildError>
     let numbered = nodes.iter().map(|&node| (node as u64 + 1, ring.mesh.nodes[node]));
     let cylinder = SeatCylinder::of_nodes(what, numbered)?;
     let seat = BodySeat {
-        group: body.group.clone(),
-        space: SeatSpace::on(&cylinder, body.basis),
+        name: seat_name(body),
+        space: SeatSpace::on(&cylinder, body.basis).on_ring(nodes.iter().map(|&node| ring.mesh.nodes[node])),
         middle: body.z.map(|z| frame(body).turned_vector([0.0, 0.0, z])[2]),
         is_turned: false,
     };
@@ -162,7 +183,23 @@ fn ties(body: &SceneBody, made: Arc<Surrounding>) -> Result<Vec<Arc<SeatTie>>, B
     Ok((0..made.seats.len()).map(tie).collect())
 }
 
-fn surrounding(body: &SceneBody, seats: &[BodySeat]) -> Result<Surrounding, BuildError> {
+/// What messages call the seat of a body: its facet group, the file of its nodes, or its reference node.
+fn seat_name(body: &SceneBody) -> String {
+    match &body.source {
+        BodySource::Mesh { .. } => body.group.clone(),
+        BodySource::Matrix(files) => {
+            let name = |seat: &MatrixSeat| match seat {
+                MatrixSeat::Nodes(path) => path.file_name().map(|name| name.to_string_lossy().into_owned()),
+                MatrixSeat::Reference(tag) => Some(format!("node {tag}")),
+            };
+            files.seats.iter().filter_map(name).collect()
+        }
+    }
+}
+
+/// A body of the scenes `of_seats`, which are the same but for their seats.
+fn surrounding(of_seats: &[&SceneBody], seats: &[BodySeat]) -> Result<Surrounding, BuildError> {
+    let body = of_seats[0];
     match &body.source {
         BodySource::Mesh {
             mesh,
@@ -183,12 +220,23 @@ fn surrounding(body: &SceneBody, seats: &[BodySeat]) -> Result<Surrounding, Buil
             )?)
         }
         BodySource::Matrix(files) => {
-            let mut matrix = MatrixBody::read(files)?;
+            let mut files = files.clone();
+            files.mass = files.mass.filter(|_| body.reads_mass);
+            files.seats = of_seats.iter().flat_map(|body| seats_of(body)).cloned().collect();
+            let mut matrix = MatrixBody::read(&files)?;
             if body.is_turned {
                 matrix.half_turn();
             }
-            Ok(Surrounding::of_matrix(&body.name, &matrix, &seats[0])?)
+            Ok(Surrounding::of_matrix(&body.name, &matrix, seats)?)
         }
+    }
+}
+
+/// Where the seats of a scene are in the matrices; none of a mesh.
+fn seats_of(body: &SceneBody) -> &[MatrixSeat] {
+    match &body.source {
+        BodySource::Mesh { .. } => &[],
+        BodySource::Matrix(files) => &files.seats,
     }
 }
 

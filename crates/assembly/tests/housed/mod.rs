@@ -166,7 +166,7 @@ fn standing(mesh: Mesh, space: SeatSpace, seats: &[(&str, bool)], young: f64) ->
     let seats: Vec<BodySeat> = seats
         .iter()
         .map(|&(group, is_turned)| BodySeat {
-            group: group.into(),
+            name: group.into(),
             space,
             middle: None,
             is_turned,

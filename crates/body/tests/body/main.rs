@@ -1,6 +1,7 @@
 //! Bodies by themselves: closed forms of a tube, bodies from matrices, and every message.
 
 mod matrices;
+mod reference;
 mod vibration;
 mod wrong_matrices;
 
@@ -11,7 +12,7 @@ use std::path::Path;
 use body::matrix::{MatrixBody, MatrixFiles};
 use body::{BodySeat, SeatBasis, SeatCylinder, SeatFunctions, SeatSpace, Surrounding, cylinder_areas};
 use fem::Material;
-use matrices::{condensed, of_matrix, write_matrix};
+use matrices::{condensed, of_matrix, seat_file, write_matrix};
 use mesh::{ElementKind, Mesh, Origin, Section, revolve};
 
 const INNER: f64 = 40e-3;
@@ -58,7 +59,7 @@ fn tube(kind: ElementKind, sectors: usize, [layers, rows]: [usize; 2]) -> Mesh {
 fn made(mesh: Mesh, material: Material, fixed: &str, basis: SeatBasis) -> Result<Surrounding, String> {
     let origin = Origin::of_generated("tube", 1.0, &mesh);
     let seat = BodySeat {
-        group: "seat_a".into(),
+        name: "seat_a".into(),
         space: space(basis),
         middle: None,
         is_turned: false,
@@ -216,14 +217,14 @@ fn a_body_of_its_matrix_is_that_of_its_mesh() {
     let files = write_matrix(dir.path(), &mesh, "outside");
     let of_mesh = made(mesh, material(0.3), "outside", basis(3, 1)).unwrap();
     let largest = of_mesh.flexibility.iter().fold(0.0f64, |a, x| x.abs().max(a));
-    let without_areas = std::fs::read_to_string(&files.seat_nodes).unwrap();
+    let without_areas = std::fs::read_to_string(seat_file(&files)).unwrap();
     let without_areas: String = without_areas
         .lines()
         .map(|line| format!("{}\n", line.split(',').next().unwrap()))
         .collect();
     for (seat, tolerance) in [(None, 1e-8), (Some(without_areas), 1e-8)] {
         if let Some(text) = seat {
-            std::fs::write(&files.seat_nodes, text).unwrap();
+            std::fs::write(seat_file(&files), text).unwrap();
         }
         let of_matrix = of_matrix(&files).unwrap();
         for (a, b) in of_matrix.flexibility.iter().zip(&of_mesh.flexibility) {
@@ -350,7 +351,7 @@ fn a_ring_beside_its_seat_is_refused_with_its_distance() {
     let origin = Origin::of_generated("tube", 1.0, &mesh);
     let with = |z: Option<f64>| {
         let seat = BodySeat {
-            group: "seat_a".into(),
+            name: "seat_a".into(),
             space: space(basis(2, 1)),
             middle: z,
             is_turned: false,
@@ -374,7 +375,7 @@ fn bodies_that_can_move_are_refused() {
     let mut mesh = small();
     // One facet whose nodes are moved onto a line is no surface; an empty list of groups holds nothing.
     let seat = BodySeat {
-        group: "seat_a".into(),
+        name: "seat_a".into(),
         space: space(basis(2, 1)),
         middle: None,
         is_turned: false,
@@ -410,12 +411,12 @@ fn matrices_with_slips_are_refused_with_their_place() {
     let dir = tempfile::tempdir().unwrap();
     let files = write_matrix(dir.path(), &small(), "outside");
     let whole = |path: &Path| std::fs::read_to_string(path).unwrap();
-    let keep = [&files.stiffness, &files.nodes, &files.seat_nodes].map(|path| whole(path));
+    let keep = [files.stiffness.as_path(), &files.nodes, seat_file(&files)].map(whole);
     let refuse = |path: &Path, text: String, expected: &str| {
         std::fs::write(path, text).unwrap();
         let said = of_matrix(&files).err().unwrap();
         assert!(said.contains(expected), "{said}\nexpected: {expected}");
-        for (path, text) in [&files.stiffness, &files.nodes, &files.seat_nodes]
+        for (path, text) in [files.stiffness.as_path(), &files.nodes, seat_file(&files)]
             .iter()
             .zip(&keep)
         {
@@ -461,13 +462,13 @@ fn matrices_with_slips_are_refused_with_their_place() {
         "node 101 stands here twice",
     );
     refuse(&files.nodes, nodes.replacen("102,", "102,a,", 1), "line 3");
-    refuse(&files.seat_nodes, format!("{seat}999\n"), "node 999 is not in");
+    refuse(seat_file(&files), format!("{seat}999\n"), "node 999 is not in");
     refuse(
-        &files.seat_nodes,
+        seat_file(&files),
         format!("{seat}{}", seat.lines().next().unwrap()),
         "stands here twice",
     );
-    refuse(&files.seat_nodes, "1.5\n".into(), "1.5 is no number of a node");
+    refuse(seat_file(&files), "1.5\n".into(), "1.5 is no number of a node");
     let mut missing = files.clone();
     missing.nodes = dir.path().join("nowhere.csv");
     assert!(of_matrix(&missing).err().unwrap().starts_with("cannot read"));

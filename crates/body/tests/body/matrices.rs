@@ -3,7 +3,7 @@
 use std::fmt::Write;
 use std::path::Path;
 
-use body::matrix::{MatrixBody, MatrixFiles};
+use body::matrix::{MatrixBody, MatrixFiles, MatrixSeat};
 use body::{BodySeat, Surrounding};
 use mesh::Mesh;
 
@@ -63,7 +63,7 @@ pub fn write_matrix(dir: &Path, mesh: &Mesh, fixed: &str) -> MatrixFiles {
         stiffness: dir.join("K.mtx"),
         mass: Some((dir.join("M.mtx"), 1e3)),
         nodes: dir.join("nodes.csv"),
-        seat_nodes: dir.join("seat.csv"),
+        seats: vec![MatrixSeat::Nodes(dir.join("seat.csv"))],
         fixed_nodes: Some(dir.join("fixed.csv")),
         length_unit: 1e-3,
         stiffness_unit: 1e3,
@@ -76,10 +76,18 @@ pub fn of_matrix(files: &MatrixFiles) -> Result<Surrounding, String> {
 
 pub fn condensed(matrix: &MatrixBody) -> Result<Surrounding, String> {
     let seat = BodySeat {
-        group: "seat".into(),
+        name: "seat".into(),
         space: space(basis(3, 1)),
         middle: None,
         is_turned: false,
     };
-    Surrounding::of_matrix("other", matrix, &seat).map_err(|e| e.to_string())
+    Surrounding::of_matrix("other", matrix, &[seat]).map_err(|e| e.to_string())
+}
+
+/// File of the nodes of the first seat.
+pub fn seat_file(files: &MatrixFiles) -> &Path {
+    match &files.seats[0] {
+        MatrixSeat::Nodes(path) => path,
+        seat => panic!("{seat:?}"),
+    }
 }

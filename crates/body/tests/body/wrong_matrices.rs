@@ -127,7 +127,7 @@ fn messages_on_matrices_speak_of_their_files() {
         space.radius *= radius;
         space.half_width *= half_width;
         BodySeat {
-            group: String::new(),
+            name: String::new(),
             space,
             middle: None,
             is_turned: false,
@@ -177,7 +177,7 @@ fn messages_on_matrices_speak_of_their_files() {
              cylinder only",
         ),
     ] {
-        let said = Surrounding::of_matrix("other", matrix, &seat)
+        let said = Surrounding::of_matrix("other", matrix, &[seat])
             .err()
             .unwrap()
             .to_string();

@@ -31,7 +31,8 @@ fn outer(hold: Hold) -> RingModel {
 fn space(ring: &RingModel, basis: SeatBasis) -> SeatSpace {
     let nodes = ring.mesh.group_nodes(ring.held_group);
     let numbered = nodes.iter().map(|&n| (n as u64, ring.mesh.nodes[n]));
-    SeatSpace::on(&SeatCylinder::of_nodes("the seat", numbered).unwrap(), basis)
+    let space = SeatSpace::on(&SeatCylinder::of_nodes("the seat", numbered).unwrap(), basis);
+    space.on_ring(nodes.iter().map(|&node| ring.mesh.nodes[node]))
 }
 
 fn harmonics(harmonics: usize, across: usize) -> SeatBasis {
@@ -125,6 +126,44 @@ fn ever_more_functions_on_a_rigid_body_clamp_the_seat() {
     );
 }
 
+/// A ring turned about its axis, so that no node lies on +x.
+fn turned(mut ring: RingModel, angle: f64) -> RingModel {
+    let (sin, cos) = angle.sin_cos();
+    let nodes = ring.mesh.nodes.iter();
+    let nodes: Vec<[f64; 3]> = nodes
+        .map(|[x, y, z]| [cos * x - sin * y, sin * x + cos * y, *z])
+        .collect();
+    ring.mesh.nodes = nodes.into();
+    ring
+}
+
+/// Wrong: with all orders and degrees that its nodes have, a seat on a rigid body would still move somewhere. 54 nodes
+/// round and 9 across take N = 27, of which there is the cosine alone, and P = 8. However the ring stands, the seat is
+/// clamped; with the order before the last it is not. A force on one node has all orders.
+#[test]
+fn all_functions_on_a_rigid_body_are_the_clamped_seat() {
+    for angle in [0.0, 0.02] {
+        let clamped = turned(outer(Hold::Clamped), angle);
+        let mut load = load(&clamped, 0.0);
+        load[3 * clamped.mesh.group_nodes("raceway")[7] + 1] -= 500.0;
+        let expected = solver(&clamped).solve(load.clone(), 1);
+        let off = |n: usize| {
+            let space = space(&clamped, harmonics(n, 8));
+            let ring = RingModel {
+                tie: Some(Arc::new(SeatTie::to_rigid(space))),
+                ..turned(outer(Hold::MeanMotion), angle)
+            };
+            let functions = ring.seat_functions("outer").unwrap().unwrap();
+            let off = difference(&solver(&ring).solve(load.clone(), 1), &expected);
+            (functions.n(), 3 * functions.nodes.len(), off)
+        };
+        let (functions, dofs, error) = off(27);
+        assert_eq!(functions, dofs);
+        println!("turned by {angle}: {error:e}, one order less {:e}", off(26).2);
+        assert!(error < 1e-9 && off(26).2 > 1e-6, "{error:e}");
+    }
+}
+
 /// A tube outside the seat, whose inner nodes are those of the ring, in layers up to 58 mm: alone, and with the ring.
 /// It is held at its feet.
 fn tube(ring: &RingModel, layers: usize) -> (Mesh, Mesh) {
@@ -192,7 +231,7 @@ fn wrapped(ring: &RingModel, layers: usize, to: f64, is_held: impl Fn([f64; 2]) 
 fn surrounding(mesh: Mesh, space: SeatSpace, material: Material) -> Surrounding {
     let origin = Origin::of_generated("tube", 1.0, &mesh);
     let seat = BodySeat {
-        group: "seat_a".into(),
+        name: "seat_a".into(),
         space,
         middle: None,
         is_turned: false,

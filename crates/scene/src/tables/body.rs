@@ -4,12 +4,14 @@
 #![doc = include_str!("example_body.toml")]
 //! ```
 
+mod matrix;
+
 use std::path::{Path, PathBuf};
 
 use assembly::Orientation;
 use body::SeatBasis;
 use body::matrix::MatrixFiles;
-use input::{LENGTH, MASS, Problems, Quantity, RATE, STIFFNESS};
+use input::{LENGTH, Problems, Quantity, RATE};
 use serde::Deserialize;
 
 use super::materials::{MaterialProperties, RawMaterial};
@@ -72,6 +74,8 @@ struct RawBodySeat {
     /// Of a list of bearings alone, which takes it out.
     bearing: Option<String>,
     group: Option<String>,
+    seat_nodes: Option<String>,
+    reference_node: Option<i64>,
     harmonics: Option<i64>,
     across: Option<i64>,
     z: Option<Quantity<LENGTH>>,
@@ -84,7 +88,7 @@ pub struct SceneBody {
     pub name: String,
     /// Where its stiffness comes from.
     pub source: BodySource,
-    /// Facet group of its seat; empty for matrices.
+    /// Facet group of its seat; empty for matrices, whose files name its nodes.
     pub group: String,
     /// Functions that are tied.
     pub basis: SeatBasis,
@@ -96,6 +100,8 @@ pub struct SceneBody {
     pub is_shared: bool,
     /// Frequency up to which its modes with a held seat move, Hz; None at rest.
     pub modes_below: Option<f64>,
+    /// Whether the mass among its matrices is read: at rest only modes over the speed ask for it.
+    pub reads_mass: bool,
     /// Where the middle of the ring's seat stands along its own z, m; None: in the middle of the group.
     pub z: Option<f64>,
 }
@@ -254,16 +260,21 @@ impl RawSceneBody {
         let seat = self.check_seat(&key, problems)?;
         let harmonics = seat.harmonics.unwrap_or(HARMONICS);
         let across = seat.across.unwrap_or(ACROSS);
+        let harmonics = SeatBasis::Harmonics {
+            harmonics: problems.whole(harmonics, "body.seat.harmonics", 1, 64),
+            across: problems.whole(across, "body.seat.across", 1, 8),
+        };
         Some(SceneBody {
-            basis: SeatBasis::Harmonics {
-                harmonics: problems.whole(harmonics, "body.seat.harmonics", 1, 64),
-                across: problems.whole(across, "body.seat.across", 1, 8),
+            basis: match seat.reference_node {
+                Some(_) => SeatBasis::Rigid,
+                None => harmonics,
             },
             name: self.name.clone(),
             ring,
             is_turned: orientation == Some(Orientation::MinusZ),
             is_shared: false,
             modes_below,
+            reads_mass: context.moves,
             source: source?,
             group: seat.group.clone().unwrap_or_default(),
             z: seat.z.as_ref().map(Quantity::si),
@@ -291,11 +302,7 @@ impl RawSceneBody {
                 None
             }
             (Some(mesh), None) => {
-                if self.mass.is_some() || self.mass_unit.is_some() {
-                    problems.add(format!(
-                        "{key} has a mesh, whose mass follows from its density; remove mass and mass_unit"
-                    ));
-                }
+                self.refuse_matrix_keys(key, problems);
                 self.check_mesh(key, mesh, context, problems, assumed)
             }
             (None, Some(_)) => {
@@ -405,67 +412,6 @@ impl RawSceneBody {
             material,
             fixed,
         })
-    }
-
-    fn check_matrix(
-        &self,
-        key: &str,
-        context: &BodyContext<'_>,
-        problems: &mut Problems,
-    ) -> Option<BodySource> {
-        if self.material.is_some() || self.fixed.is_some() || self.mesh_unit.is_some() {
-            problems.add(format!(
-                "{key} comes from a matrix, which has material and supports in it; remove mesh_unit, material and \
-                 fixed (nodes are held by fixed_nodes)"
-            ));
-        }
-        let mut path = |name: &str, text: &Option<String>| match text {
-            Some(text) => Some(file(&format!("{key}: {name}"), text, context, problems)),
-            None => {
-                problems.add(format!(
-                    "{key}: {name} is missing; a body from a matrix needs stiffness, nodes and seat_nodes"
-                ));
-                None
-            }
-        };
-        let stiffness = path("stiffness", &self.stiffness);
-        let nodes = path("nodes", &self.nodes);
-        let seat_nodes = path("seat_nodes", &self.seat_nodes);
-        let own = |text: &String| file(&format!("{key}: fixed_nodes"), text, context, problems);
-        let fixed_nodes = self.fixed_nodes.as_ref().map(own);
-        let length = self.length_unit.as_deref();
-        let length = unit_of(&format!("{key}: length_unit"), length, (LENGTH, "mm"), problems);
-        let unit = self.stiffness_unit.as_deref();
-        let unit = unit_of(
-            &format!("{key}: stiffness_unit"),
-            unit,
-            (STIFFNESS, "N/mm"),
-            problems,
-        );
-        let own = |text: &String| file(&format!("{key}: mass"), text, context, problems);
-        let mass = self.mass.as_ref().map(own);
-        let mass = match (mass, self.mass_unit.as_deref()) {
-            (None, None) => None,
-            (None, Some(_)) => {
-                problems.add(format!(
-                    "{key} has mass_unit, but no mass; add the file of its mass matrix"
-                ));
-                None
-            }
-            (Some(path), typed) => {
-                let unit = unit_of(&format!("{key}: mass_unit"), typed, (MASS, "kg"), problems);
-                Some((path, unit?))
-            }
-        };
-        Some(BodySource::Matrix(MatrixFiles {
-            stiffness: stiffness?,
-            mass,
-            nodes: nodes?,
-            seat_nodes: seat_nodes?,
-            fixed_nodes,
-            length_unit: length?,
-            stiffness_unit: unit?,
-        }))
     }
 }
 

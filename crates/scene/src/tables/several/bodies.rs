@@ -19,6 +19,7 @@ pub struct RawListedBody {
     #[serde(default)]
     name: String,
     stiffness: Option<String>,
+    seat_nodes: Option<String>,
     #[serde(default)]
     seat: Vec<RawListedSeat>,
 }
@@ -28,6 +29,8 @@ struct RawListedSeat {
     ring: RingName,
     bearing: Option<String>,
     group: Option<String>,
+    seat_nodes: Option<String>,
+    reference_node: Option<i64>,
 }
 
 /// Every seat names one of the bearings `names`, and every ring has one body at most.
@@ -82,10 +85,10 @@ impl RawListedBody {
     /// What several seats of one body ask for.
     fn check_seats(&self, problems: &mut Problems) {
         let name = self.name.as_str();
-        if self.stiffness.is_some() && self.seat.len() > 1 {
+        if self.stiffness.is_some() && self.seat.len() > 1 && self.seat_nodes.is_some() {
             problems.add(format!(
-                "body {name:?} comes from a matrix and has {} seats, but its table of nodes has one; give each bearing \
-                 a [[body]] of its own, or give the body as a mesh",
+                "body {name:?} has {} seats, but names nodes of one, in seat_nodes of [[body]]; expected seat_nodes in \
+                 each [[body.seat]]",
                 self.seat.len()
             ));
         }
@@ -96,15 +99,27 @@ impl RawListedBody {
                  expected seats of one kind"
             ));
         }
-        let groups: Vec<&str> = self
-            .seat
-            .iter()
-            .filter_map(|seat| seat.group.as_deref())
-            .collect();
-        for (number, group) in groups.iter().enumerate() {
-            if groups[..number].contains(group) {
+        let group = |seat: &RawListedSeat| seat.group.clone();
+        let nodes = |seat: &RawListedSeat| seat.seat_nodes.clone();
+        self.require_different("group", group, problems);
+        let reference = |seat: &RawListedSeat| seat.reference_node.map(|node| node.to_string());
+        self.require_different("seat_nodes", nodes, problems);
+        self.require_different("reference_node", reference, problems);
+    }
+
+    /// Seats stand at different places of the body.
+    fn require_different(
+        &self,
+        key: &str,
+        of_seat: impl Fn(&RawListedSeat) -> Option<String>,
+        problems: &mut Problems,
+    ) {
+        let values: Vec<String> = self.seat.iter().filter_map(of_seat).collect();
+        for (number, value) in values.iter().enumerate() {
+            if values[..number].contains(value) {
                 problems.add(format!(
-                    "body {name:?} has two seats with the group {group:?}; expected a group of its own for each seat"
+                    "body {:?} has two seats with the {key} {value:?}; expected a {key} of its own for each seat",
+                    self.name
                 ));
             }
         }

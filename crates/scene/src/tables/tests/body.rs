@@ -1,6 +1,7 @@
 //! `[[body]]`: an elastic body round the outer ring.
 
 use ::body::SeatBasis;
+use ::body::matrix::MatrixSeat;
 
 use super::*;
 
@@ -61,6 +62,51 @@ fn a_body_of_matrices_reads_as_it_says() {
         (1e-3, 1e3, None)
     );
     assert!(files.stiffness.ends_with("K.mtx"), "{:?}", files.stiffness);
+    let nodes = |text: &str| match body_of(text).source {
+        BodySource::Matrix(files) => files.seats,
+        source => panic!("{source:?}"),
+    };
+    // The nodes of the seat stand in its own table or in that of the body.
+    let of_seat = matrices("").replace("\nseat_nodes = \"s.csv\"", "");
+    let of_seat = of_seat.replace("ring = \"outer\"", "ring = \"outer\"\nseat_nodes = \"s.csv\"");
+    assert_eq!(nodes(&of_seat), nodes(&text));
+}
+
+/// Wrong: a seat on one node would be tied as a cylinder, or a slip beside it pass.
+#[test]
+fn a_seat_may_move_with_one_node() {
+    let of_node = |more: &str| {
+        let text = matrices("").replace("\nseat_nodes = \"s.csv\"", "");
+        let text = text.replace("harmonics = 12", "").replace("\nacross = 2", "");
+        text.replace("ring = \"outer\"", &format!("ring = \"outer\"\n{more}"))
+    };
+    let body = body_of(&of_node("reference_node = 4711"));
+    let BodySource::Matrix(files) = &body.source else {
+        panic!("{body:?}");
+    };
+    assert_eq!(files.seats, [MatrixSeat::Reference(4711)]);
+    assert_eq!(body.basis, SeatBasis::Rigid);
+    for (more, expected) in [
+        (
+            "reference_node = 4711\nharmonics = 3",
+            "has reference_node, with which a seat moves as a rigid one, but harmonics or across too; remove them",
+        ),
+        (
+            "reference_node = 4711\nseat_nodes = \"s.csv\"",
+            "has reference_node and seat_nodes; keep reference_node where the seat moves with one node",
+        ),
+        (
+            "reference_node = -1",
+            "seat.reference_node is -1; expected the number of a node, 0, 1, 2 ...",
+        ),
+    ] {
+        let said = parse(&of_node(more), &[]).unwrap_err().to_string();
+        assert!(said.contains(expected), "{said}\nexpected: {expected}");
+    }
+    let of_mesh = with(SEAT, &format!("{SEAT}\nreference_node = 4711"));
+    let said = parse(&of_mesh, &[]).unwrap_err().to_string();
+    let expected = "has a mesh, but reference_node is a key of a body from matrices; remove it";
+    assert!(said.contains(expected), "{said}");
 }
 
 /// The delivered scene with a body of matrices.
@@ -69,7 +115,8 @@ fn matrices(more: &str) -> String {
     let end = SCENE.find("[[body.seat]]").unwrap();
     let files = "stiffness = \"K.mtx\"\nnodes = \"n.csv\"\nseat_nodes = \"s.csv\"";
     let keys = format!("{files}\nlength_unit = \"mm\"\nstiffness_unit = \"N/mm\"\n");
-    format!("{}{keys}{more}\n{}", &SCENE[..start], &SCENE[end..])
+    let seat = SCENE[end..].replacen("group = \"seat_a\"", "", 1);
+    format!("{}{keys}{more}\n{seat}", &SCENE[..start])
 }
 
 /// Wrong: a body would be left out in silence, stand where nothing is known of it, or be refused without a remedy.
@@ -155,6 +202,22 @@ fn scenes_in_which_a_body_makes_no_sense_are_refused() {
         (
             matrices("").replace("stiffness_unit = \"N/mm\"", "stiffness_unit = \"mm\""),
             "stiffness_unit",
+        ),
+        (
+            matrices("").replace("ring = \"outer\"", "ring = \"outer\"\nseat_nodes = \"s.csv\""),
+            "has seat_nodes itself and in a [[body.seat]]; keep that of the seat",
+        ),
+        (
+            matrices("").replace("ring = \"outer\"", "ring = \"outer\"\ngroup = \"seat_a\""),
+            "comes from a matrix, which has no facet groups; remove seat.group",
+        ),
+        (
+            with(SEAT, &format!("{SEAT}\nseat_nodes = \"s.csv\"")),
+            "has a mesh, but seat_nodes is a key of a body from matrices; remove it",
+        ),
+        (
+            with("[[body.seat]]", "stiffness_unit = \"N/mm\"\n[[body.seat]]"),
+            "has a mesh, but stiffness_unit is a key of a body from matrices; remove it",
         ),
         (
             matrices("fixed = [\"feet\"]"),
@@ -254,6 +317,9 @@ fn only_a_body_with_a_mass_moves() {
     };
     let (path, unit) = files.mass.unwrap();
     assert!(path.ends_with("M.mtx") && unit == 1e3, "{path:?} {unit}");
+    let with_mass = matrices("mass = \"M.mtx\"\nmass_unit = \"t\"");
+    let reads = [&with_mass, &moving(&with_mass)].map(|text| body_of(text).reads_mass);
+    assert_eq!(reads, [false, true]);
     for (text, expected) in [
         (
             moving(&below("0 Hz")),

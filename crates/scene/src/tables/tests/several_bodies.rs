@@ -1,5 +1,7 @@
 //! `[[body]]` in lists of bearings.
 
+use ::body::matrix::MatrixSeat;
+
 use super::several::{BEAM, Lists, list};
 use super::*;
 
@@ -47,6 +49,32 @@ fn each_bearing_has_its_own_seat_of_a_body_that_carries_both() {
     );
 }
 
+/// A body of matrices with a seat for each bearing.
+fn of_matrices(more: &str, [front, rear]: [&str; 2]) -> String {
+    format!(
+        "[[body]]\nname = \"block\"\nstiffness = \"K.mtx\"\nnodes = \"n.csv\"\nlength_unit = \"mm\"\n\
+         stiffness_unit = \"N/mm\"\n{more}\n[[body.seat]]\nring = \"outer\"\nbearing = \"front\"\n\
+         seat_nodes = \"{front}\"\n[[body.seat]]\nring = \"outer\"\nbearing = \"rear\"\nseat_nodes = \"{rear}\"\n"
+    )
+}
+
+/// Wrong: the nodes of one seat of a body of matrices would be taken for those of another.
+#[test]
+fn each_bearing_has_the_nodes_of_its_own_seat() {
+    let lists = Lists::new("matrix_bodies");
+    let list = lists.several(&list(BEAM, &of_matrices("", ["a.csv", "b.csv"])), &[]);
+    for (bearing, file) in list.bearings.iter().zip(["a.csv", "b.csv"]) {
+        let body = bearing.scene.bodies[1].as_ref().unwrap();
+        let BodySource::Matrix(files) = &body.source else {
+            panic!("{body:?}");
+        };
+        let [MatrixSeat::Nodes(nodes)] = files.seats.as_slice() else {
+            panic!("{files:?}");
+        };
+        assert!(nodes.ends_with(file) && body.is_shared, "{nodes:?}");
+    }
+}
+
 /// Wrong: a body that no bearing sits in, or two for one, would be left out without a word.
 #[test]
 fn bodies_that_fit_no_bearing_are_refused_with_advice() {
@@ -89,12 +117,35 @@ fn bodies_that_fit_no_bearing_are_refused_with_advice() {
             "body \"block\" has two seats with the group \"seat_a\"; expected a group of its own for each seat",
         ),
         (
+            list(BEAM, &of_matrices("", ["a.csv", "a.csv"])),
+            "body \"block\" has two seats with the seat_nodes \"a.csv\"; expected a seat_nodes of its own for each \
+             seat",
+        ),
+        (
             list(
                 BEAM,
-                &two_seats("seat_b", "rear").replace("mesh = \"block.msh\"", "stiffness = \"K.mtx\""),
+                &of_matrices("", ["a.csv", "b.csv"])
+                    .replace("seat_nodes = \"a.csv\"", "reference_node = 7")
+                    .replace("seat_nodes = \"b.csv\"", "reference_node = 7"),
             ),
-            "body \"block\" comes from a matrix and has 2 seats, but its table of nodes has one; give each bearing a \
-             [[body]] of its own, or give the body as a mesh",
+            "body \"block\" has two seats with the reference_node \"7\"; expected a reference_node of its own for each \
+             seat",
+        ),
+        (
+            list(
+                BEAM,
+                &of_matrices("seat_nodes = \"s.csv\"", ["a.csv", "b.csv"])
+                    .replace("\nseat_nodes = \"b.csv\"", ""),
+            ),
+            "body \"block\" has 2 seats, but names nodes of one, in seat_nodes of [[body]]; expected seat_nodes in \
+             each [[body.seat]]",
+        ),
+        (
+            list(
+                BEAM,
+                &of_matrices("", ["a.csv", "b.csv"]).replace("\nseat_nodes = \"b.csv\"", ""),
+            ),
+            "body \"block\": seat_nodes is missing; a body from a matrix needs stiffness, nodes and seat_nodes",
         ),
         (
             list(
