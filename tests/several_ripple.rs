@@ -2,7 +2,9 @@
 
 use serde_json::Value;
 
+use crate::housing::delivered;
 use crate::several::{PAIR, flexible_pair, parts, succeeds, with_type};
+use crate::shared_housing::{FEW, SCENE as HOUSING};
 use crate::util::lockstep::small_motion;
 use crate::util::{Dir, assert_close};
 
@@ -297,5 +299,25 @@ fn a_pair_is_linearised_where_its_equilibria_over_time_stand() {
     // The front bearing has the axes of the shaft; half of the offset lies between its ring and the shaft.
     for (axis, name) in ["x_m", "y_m"].into_iter().enumerate() {
         assert_close(name, shaft[axis].as_f64().unwrap(), value(name), 1e-6);
+    }
+}
+
+/// Wrong: what bearings in one housing do to each other would have no ripple, or that of balls that stay.
+#[test]
+fn couplings_by_a_housing_have_the_ripple_of_balls_elsewhere() {
+    let dir = delivered();
+    let half = ["0", "1"].map(|i| format!("bearing.{i}.first_ball_azimuth=\"10 deg\""));
+    let moved = ["--set", half[0].as_str(), "--set", half[1].as_str()];
+    // Some balls carry nothing: the entries change by 5 % of the largest.
+    let load = ["--set", "shaft.load.0.force=[\"4 kN\", \"0 N\", \"200 N\"]"];
+    let at = |out: &str, more: &[&str]| stiffness(&dir, HOUSING, out, &[&FEW[..], &load, more].concat());
+    let (found, elsewhere) = (at("ripple", &["--ripple", "2"]), at("moved", &moved));
+    let couplings = |json: &Value| json["couplings"].as_array().unwrap().clone();
+    assert_eq!(couplings(&found).len(), 2);
+    for (found, elsewhere) in couplings(&found).iter().zip(&couplings(&elsewhere)) {
+        let both = [found, elsewhere].map(|coupling| matrix(&coupling["stiffness"][0]));
+        for (name, expected) in OF_RIPPLE.into_iter().zip(ripple_of(&both)) {
+            assert_same(name, matrix(&found["ripple"][0][name]), expected, 1e-9);
+        }
     }
 }
