@@ -187,6 +187,11 @@ fn matrices_of_abaqus_with_slips_are_refused_with_their_place() {
         ),
         (
             DECK.to_string(),
+            Some(more("3,1, 3,2, nan")),
+            "line 47: nan; expected a number",
+        ),
+        (
+            DECK.to_string(),
             Some(more("3,1, 3,1, 1.0E+36")),
             "stands for a held node; hold none in the deck",
         ),
@@ -246,9 +251,7 @@ fn matrices_of_abaqus_with_slips_are_refused_with_their_place() {
 fn matrices_of_calculix_have_rows_by_node_and_direction() {
     let dir = Dir::empty();
     dir.write("job.inp", DECK);
-    // The rows of CalculiX come in an order of its own: here from the last to the first.
-    let names = (0..9).rev().map(row).map(|(node, c)| format!("{node}.{c}\n"));
-    dir.write("job.dof", names.collect::<String>());
+    dir.write("job.dof", names_of_rows().collect::<String>());
     let mut text = String::new();
     for i in 0..9 {
         for j in 0..=i {
@@ -278,4 +281,48 @@ fn matrices_of_calculix_have_rows_by_node_and_direction() {
         [dir.text("made/seat.csv"), dir.text("made/feet.csv")],
         ["node\n3\n7\n", "node\n5\n"]
     );
+    // Wrong rows.
+    let first = names_of_rows().collect::<String>();
+    let twice = first.replace("3.3\n", "3.2\n");
+    let cases = [
+        (
+            first.as_str(),
+            "0 0 4.0\n",
+            "line 1: '0 0 4.0'; expected rows and columns 1 to 9 and a number",
+        ),
+        (
+            first.as_str(),
+            "1 10 4.0\n",
+            "line 1: '1 10 4.0'; expected rows and columns 1 to 9 and a number",
+        ),
+        (
+            first.as_str(),
+            "1 1 inf\n",
+            "line 1: '1 1 inf'; expected rows and columns 1 to 9 and a number",
+        ),
+        (
+            first.as_str(),
+            "1 x 4.0\n",
+            "line 1: '1 x 4.0'; expected row, column, value",
+        ),
+        (
+            twice.as_str(),
+            "1 1 4.0\n",
+            "node 3 has rows in the directions 1 2 2; expected 1 2 3",
+        ),
+    ];
+    for (rows, matrix, expected) in cases {
+        dir.write("job.dof", rows);
+        dir.write("job.sti", matrix);
+        let (code, said) = script(&dir, "matrix-from-calculix", &["job", "--seat", "SEAT"]).unwrap();
+        assert!(
+            code == 2 && said.contains(expected),
+            "{code} {said}\nexpected: {expected}"
+        );
+    }
+}
+
+/// The rows of CalculiX, which come in an order of its own: here from the last to the first.
+fn names_of_rows() -> impl Iterator<Item = String> {
+    (0..9).rev().map(row).map(|(node, c)| format!("{node}.{c}\n"))
 }

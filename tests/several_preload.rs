@@ -77,3 +77,34 @@ fn the_preload_is_what_both_orientations_carry() {
     assert!(!dir.text("tandem/stiffness.csv").contains("preload_n"));
     assert!(!dir.text("tandem/stiffness.json").contains("preload_n"));
 }
+
+/// Wrong: bearings of two shoulders that a negative offset presses the other way would have no preload. From the one
+/// shoulder to the other each ring moves by twice A sin(alpha), with A = r_i + r_o - D, cos(alpha) = 1 - P_d / (2 A)
+/// (Harris, Rolling Bearing Analysis, 4th ed., eqs. 2.8 and 2.9): so an offset of -o - 4 A sin(alpha) is one of o.
+#[test]
+fn bearings_press_on_their_other_shoulders_as_well() {
+    let dir = with_type();
+    let (a, play): (f64, f64) = (4.65 + 4.75 - 9.0, 74.037 - 56.01 - 18.0);
+    let angle = (1.0 - play / (2.0 * a)).acos();
+    let other = -0.02 - 4.0 * a * angle.sin();
+    let preload = |name: &str, offset: f64| {
+        let scene = unloaded(&format!("offset = \"{offset} mm\"")) + "[static]\n";
+        dir.write(&format!("{name}.toml"), scene);
+        succeeds(&dir, &["stiffness", &format!("{name}.toml"), "--out", name]);
+        Table::read(&dir, &format!("{name}/stiffness.csv")).column("preload_n")[0]
+    };
+    assert_close(
+        "other shoulders",
+        preload("back", other),
+        preload("there", 0.02),
+        1e-6,
+    );
+    // Between them nothing presses.
+    let between = unloaded("offset = \"-0.05 mm\"").replace("z = \"free\"", "z = \"locked\"") + "[static]\n";
+    dir.write("loose.toml", between);
+    succeeds(&dir, &["stiffness", "loose.toml", "--out", "loose"]);
+    assert_eq!(
+        Table::read(&dir, "loose/stiffness.csv").column("preload_n"),
+        [0.0]
+    );
+}

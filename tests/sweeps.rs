@@ -358,10 +358,22 @@ fn a_sweep_stops_at_a_signal_and_names_the_points_that_are_left() {
     assert_eq!(Table::read(&dir, "out/shaft.csv").rows.len(), solved);
     let said = format!(
         "stopped: SIGTERM received; the first {solved} of the {POINTS} points of the sweep are in out; for the others: \
-         raceway run scene.toml --points {solved}-{}, into another folder",
+         the same command with --points {solved}-{} and another --out",
         POINTS - 1
     );
     assert!(outcome.stderr.contains(&said), "{}", outcome.stderr);
+    // Exit code 75 invites to resume.
+    let resumed = dir.raceway(&["resume", "out"]);
+    assert_eq!(resumed.code, Some(2));
+    let expected = "out holds results of a [sweep] scene; only a run over time";
+    assert!(resumed.stderr.contains(expected), "{}", resumed.stderr);
+    // As told: the others.
+    let part = format!("{solved}-{}", solved + 1);
+    dir.run("rest", &[&["--points", part.as_str()], &RIGID[..]].concat());
+    assert_eq!(
+        committed_steps(&dir.path("rest")).unwrap(),
+        [solved as u64, solved as u64 + 1]
+    );
     assert_eq!(
         summary(&dir, "out")["status"]
             .as_str()

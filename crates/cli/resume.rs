@@ -99,6 +99,9 @@ pub fn resume(request: &ResumeRequest) -> Result<(), Failure> {
     Ok(())
 }
 
+/// Tables of runs over time.
+const OVER_TIME: [&str; 2] = ["dynamic", "quasi_static"];
+
 /// What a rank reads of a run that goes on.
 struct Read {
     record: StepRecord,
@@ -247,7 +250,7 @@ fn scene_of(
     };
     if request.scene.is_some() || path.exists() {
         if !request.stored_scene {
-            require_same_file(&path, &overrides, &record.scene)?;
+            require_same_file(&path, &overrides, (&record.scene, &request.dir))?;
         }
     } else {
         print::note(format_args!(
@@ -278,8 +281,8 @@ fn scene_of(
     Ok(scene)
 }
 
-/// Fails when the scene file says something else than the stored scene, besides what may change.
-fn require_same_file(path: &Path, overrides: &[String], stored: &str) -> Result<(), Failure> {
+/// Fails when the scene file says something else than the scene stored in a folder, besides what may change.
+fn require_same_file(path: &Path, overrides: &[String], (stored, dir): (&str, &Path)) -> Result<(), Failure> {
     let now = Scene::load_with(path, overrides, MeshFiles::MayBeMissing)
         .map_err(anyhow::Error::from)
         .context(
@@ -293,6 +296,10 @@ fn require_same_file(path: &Path, overrides: &[String], stored: &str) -> Result<
         .collect();
     if refused.is_empty() {
         return Ok(());
+    }
+    // Each step of a sweep holds the scene of its point.
+    if !changes.iter().any(|change| change.is_below(&OVER_TIME)) {
+        OverTime::of(&now.analysis, dir)?;
     }
     Err(anyhow!(
         "the scene file {} has changed since the run: {}; put it back, or go on with the scene of the run: \

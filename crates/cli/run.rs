@@ -244,9 +244,8 @@ impl OverInstants for LoadCases<'_, '_, '_> {
     fn stop(&mut self, reason: &str) -> Failure {
         let (solved, last) = (self.solutions.len() as u64, self.due().last);
         let next = self.first + solved;
-        let scene = self.scene.path.display();
         let others =
-            format!("for the others: raceway run {scene} --points {next}-{last}, into another folder");
+            format!("for the others: the same command with --points {next}-{last} and another --out");
         instants::stopped_sweep(reason, (self.first, solved, last), self.dir, &others)
     }
 

@@ -169,8 +169,10 @@ impl OverInstants for ListCases<'_> {
     }
 
     fn stop(&mut self, reason: &str) -> Failure {
-        let others = "for the others, run a sweep of their values into another folder";
-        instants::stopped_sweep(reason, (0, self.solved, self.due().last), self.dir, others)
+        let next = words_of(column(self.scene), self.points[self.solved as usize].0);
+        let others =
+            format!("{next}the first of the others, which a sweep of their values has in another folder");
+        instants::stopped_sweep(reason, (0, self.solved, self.due().last), self.dir, &others)
     }
 
     fn advance(&mut self, n: u64, _progress: &mut Progress) -> Result<(), Failure> {

@@ -116,8 +116,11 @@ impl Assembly {
                 .reduce(|sum, force| sum + force)
         };
         let both = carried(Orientation::PlusZ).zip(carried(Orientation::MinusZ));
-        // Not below 0: a bearing that is pulled the other way presses on no other.
-        both.map(|(plus, minus)| plus.min(minus).max(0.0))
+        // Bearings with two shoulders press either way; those pulled to one side press on no other.
+        both.map(|(plus, minus)| match plus * minus > 0.0 {
+            true => plus.abs().min(minus.abs()),
+            false => 0.0,
+        })
     }
 
     /// Force x, y, z, N, and moment about x and y, N m, about the origin of the shaft, by which a bearing pushes it.

@@ -312,9 +312,14 @@ fn require_sound(
         .collect();
     if let Some(dof) = diagonal.iter().position(|d| *d <= 0.0) {
         let (node, axis) = place(dof);
+        let advice = match nodes.is_rotation[dof / 3] {
+            true => {
+                "condense the model with the inertia of what moves with the node, or give the node its own"
+            }
+            false => "take out nodes without elements",
+        };
         let problem = format!(
-            "the {what} of node {node} in {axis} is {:e}; expected a positive number: take out nodes without \
-             elements",
+            "the {what} of node {node} in {axis} is {:e}; expected a positive number: {advice}",
             diagonal[dof]
         );
         return Err(wrong(path, 0, problem));

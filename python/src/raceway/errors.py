@@ -37,4 +37,4 @@ class NoSolution(ProgramError):
 
 
 class StoppedEarly(ProgramError):
-    """A run over time stopped before its end and has saved its step (exit code 75): `raceway.resume` goes on."""
+    """A run stopped before its end and was saved (exit code 75): over time `raceway.resume` goes on."""

@@ -27,7 +27,8 @@ impl RawSceneBody {
             Some(text) => Some(file(&format!("{key}: {name}"), text, context, problems)),
             None => {
                 problems.add(format!(
-                    "{key}: {name} is missing; a body from a matrix needs stiffness, nodes and seat_nodes"
+                    "{key}: {name} is missing; a body from a matrix needs stiffness, nodes and, for each seat, \
+                     seat_nodes or reference_node"
                 ));
                 None
             }
@@ -91,8 +92,8 @@ impl RawSceneBody {
     fn check_matrix_seat(&self, key: &str, problems: &mut Problems) {
         if self.seat.iter().any(|seat| seat.group.is_some()) {
             problems.add(format!(
-                "{key} comes from a matrix, which has no facet groups; remove seat.group, seat_nodes name the nodes of \
-                 the seat"
+                "{key} comes from a matrix, which has no facet groups; remove seat.group; seat_nodes or reference_node \
+                 say what the seat is"
             ));
         }
         let has_own = self.seat.iter().any(|seat| seat.seat_nodes.is_some());

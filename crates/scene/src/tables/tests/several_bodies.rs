@@ -145,7 +145,8 @@ fn bodies_that_fit_no_bearing_are_refused_with_advice() {
                 BEAM,
                 &of_matrices("", ["a.csv", "b.csv"]).replace("\nseat_nodes = \"b.csv\"", ""),
             ),
-            "body \"block\": seat_nodes is missing; a body from a matrix needs stiffness, nodes and seat_nodes",
+            "body \"block\": seat_nodes is missing; a body from a matrix needs stiffness, nodes and, for each seat, \
+             seat_nodes or reference_node",
         ),
         (
             list(
