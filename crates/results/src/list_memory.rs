@@ -65,7 +65,8 @@ pub fn forecast_list(analysis: &Analysis, bearings: &[BearingMemory<'_>]) -> (us
     let is_first = |i: &usize| !bearings[..*i].iter().any(|known| known.is_of_type(&bearings[*i]));
     let first: Vec<usize> = (0..bearings.len()).filter(is_first).collect();
     let lasting: usize = first.iter().map(|&i| bearings[i].lasting()).sum();
-    let making = |&i: &usize| forecast_peak(bearings[i].rest, at_once) - program - bearings[i].lasting();
+    let alone = |i: usize| forecast_peak(bearings[i].rest, at_once);
+    let making = |&i: &usize| alone(i).saturating_sub(program + bearings[i].lasting());
     let further = (0..bearings.len()).filter(|i| !first.contains(i));
     let further: usize = further.map(|i| bearings[i].n_nodes()).sum();
     let rest = program + lasting + first.iter().map(making).max().unwrap_or(0) + AT_REST_BYTES * further;
