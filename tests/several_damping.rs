@@ -3,6 +3,7 @@
 use serde_json::Value;
 
 use crate::several::{succeeds, with_type};
+use crate::util::matrices::{assert_same_matrix, matrix};
 use crate::util::tables::Table;
 use crate::util::{Dir, assert_close};
 
@@ -51,26 +52,6 @@ fn modes_column(dir: &Dir, out: &str, column: &str) -> Vec<f64> {
     rows.map(|row| row[place].parse().unwrap()).collect()
 }
 
-fn matrix(json: &Value) -> [[f64; 5]; 5] {
-    assert!(json.is_array(), "{json}");
-    std::array::from_fn(|i| std::array::from_fn(|j| json[i][j].as_f64().unwrap()))
-}
-
-/// Every entry to a share of the largest of its kind.
-#[track_caller]
-fn assert_same(found: [[f64; 5]; 5], expected: [[f64; 5]; 5], limit: f64) {
-    let arm = |i: usize| if i < 3 { 1.0 } else { 0.03 };
-    let scaled = |m: &[[f64; 5]; 5], i: usize, j: usize| m[i][j] / (arm(i) * arm(j));
-    let all = (0..25).map(|k| (k / 5, k % 5));
-    let largest = all
-        .clone()
-        .fold(0.0f64, |most, (i, j)| most.max(scaled(&expected, i, j).abs()));
-    for (i, j) in all {
-        let error = (scaled(&found, i, j) - scaled(&expected, i, j)).abs() / largest;
-        assert!(error < limit, "{i} {j}: {error:e}");
-    }
-}
-
 /// Wrong: a list would lose the damping that the same bearing has alone, or say that its modes have none. Campbell too.
 #[test]
 fn a_list_of_one_bearing_has_the_damping_of_the_bearing() {
@@ -91,8 +72,8 @@ fn a_list_of_one_bearing_has_the_damping_of_the_bearing() {
     assert!(expected[0][0] > 100.0, "{}", expected[0][0]);
     let of_bearing = &list["bearings"]["only"]["points"][0];
     let of_shaft = &list["shaft"]["points"][0];
-    assert_same(matrix(&of_bearing["damping"]), expected, 1e-9);
-    assert_same(matrix(&of_shaft["damping"]), expected, 1e-9);
+    assert_same_matrix("damping", matrix(&of_bearing["damping"]), expected, 1e-9);
+    assert_same_matrix("damping", matrix(&of_shaft["damping"]), expected, 1e-9);
     assert_eq!(list["damping_note"], alone["damping_note"]);
     let [point, own] = [&of_shaft["operating_point"], &alone["operating_point"]];
     for key in ["time_s", "speed_rad_per_s"] {
@@ -152,7 +133,12 @@ fn a_rigid_shaft_has_the_damping_of_both_bearings_and_a_stiff_beam_as_well() {
             }
         }
     }
-    assert_same(matrix(&json["shaft"]["points"][0]["damping"]), expected, 1e-12);
+    assert_same_matrix(
+        "damping",
+        matrix(&json["shaft"]["points"][0]["damping"]),
+        expected,
+        1e-12,
+    );
     // The same on a beam that hardly gives.
     let rest = MOTION.split("polar_inertia = \"2e-3 kg m2\"\n").nth(1).unwrap();
     let beam = format!(
@@ -163,7 +149,12 @@ fn a_rigid_shaft_has_the_damping_of_both_bearings_and_a_stiff_beam_as_well() {
     );
     dir.write("beam.toml", format!("{bearings}{pairing}{beam}{rest}"));
     let (json, _) = stiffness(&dir, "beam.toml", "b");
-    assert_same(matrix(&json["shaft"]["points"][0]["damping"]), expected, 2e-3);
+    assert_same_matrix(
+        "damping",
+        matrix(&json["shaft"]["points"][0]["damping"]),
+        expected,
+        2e-3,
+    );
 }
 
 /// Wrong: a list at rest would say nothing of its damping, or something else than a bearing alone.

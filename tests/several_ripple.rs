@@ -6,6 +6,7 @@ use crate::housing::delivered;
 use crate::several::{PAIR, flexible_pair, parts, succeeds, with_type};
 use crate::shared_housing::{FEW, SCENE as HOUSING};
 use crate::util::lockstep::small_motion;
+use crate::util::matrices::{assert_same_matrix, matrix};
 use crate::util::{Dir, assert_close};
 
 /// Angle from a ball of the test's bearing to the next, deg.
@@ -27,26 +28,6 @@ fn list_of_one(rest: &str) -> String {
 fn stiffness(dir: &Dir, scene: &str, out: &str, more: &[&str]) -> Value {
     succeeds(dir, &[&["stiffness", scene, "--out", out], more].concat());
     serde_json::from_str(&dir.text(&format!("{out}/stiffness.json"))).unwrap()
-}
-
-fn matrix(json: &Value) -> [[f64; 5]; 5] {
-    assert!(json.is_array(), "{json}");
-    std::array::from_fn(|i| std::array::from_fn(|j| json[i][j].as_f64().unwrap()))
-}
-
-/// Every entry to a share of the largest of its kind.
-#[track_caller]
-fn assert_same(what: &str, found: [[f64; 5]; 5], expected: [[f64; 5]; 5], limit: f64) {
-    let arm = |i: usize| if i < 3 { 1.0 } else { 0.03 };
-    let scaled = |m: &[[f64; 5]; 5], i: usize, j: usize| m[i][j] / (arm(i) * arm(j));
-    let all = (0..25).map(|k| (k / 5, k % 5));
-    let largest = all
-        .clone()
-        .fold(0.0f64, |most, (i, j)| most.max(scaled(&expected, i, j).abs()));
-    for (i, j) in all {
-        let error = (scaled(&found, i, j) - scaled(&expected, i, j)).abs() / largest;
-        assert!(error < limit, "{what} {i} {j}: {error:e}");
-    }
 }
 
 const OF_RIPPLE: [&str; 3] = ["minimum", "mean", "maximum"];
@@ -95,7 +76,7 @@ fn a_list_of_one_bearing_has_the_ripple_of_the_bearing() {
                 &list["shaft"]["points"][0],
             ] {
                 assert_eq!(point["ripple"]["positions"], alone["ripple"]["positions"]);
-                assert_same(name, matrix(&point["ripple"][name]), expected, 1e-9);
+                assert_same_matrix(name, matrix(&point["ripple"][name]), expected, 1e-9);
             }
         }
         let [low, high] = ["minimum", "maximum"].map(|name| matrix(&alone["ripple"][name])[0][0]);
@@ -154,7 +135,7 @@ fn the_ripple_of_a_pair_is_that_of_scenes_with_their_balls_elsewhere() {
     let json: Value = serde_json::from_str(&dir.text("k/stiffness.json")).unwrap();
     for (point, matrices) in three_points(&json).into_iter().zip(&expected) {
         for (name, expected) in OF_RIPPLE.into_iter().zip(ripple_of(matrices)) {
-            assert_same(name, matrix(&point["ripple"][name]), expected, 1e-9);
+            assert_same_matrix(name, matrix(&point["ripple"][name]), expected, 1e-9);
         }
     }
     let front = &three_points(&json)[0]["ripple"];
@@ -183,7 +164,7 @@ fn bearings_of_two_kinds_take_all_places_against_each_other() {
     for (point, matrices) in three_points(&json).into_iter().zip(&expected) {
         assert_eq!(point["ripple"]["positions"], 4);
         for (name, expected) in OF_RIPPLE.into_iter().zip(ripple_of(matrices)) {
-            assert_same(name, matrix(&point["ripple"][name]), expected, 1e-9);
+            assert_same_matrix(name, matrix(&point["ripple"][name]), expected, 1e-9);
         }
     }
     let refused = dir.raceway(&["stiffness", "pair.toml", "--out", "none", "--ripple", "40"]);
@@ -241,12 +222,12 @@ fn a_list_is_linearised_at_a_time_of_its_motion_as_a_bearing_is() {
     let shaft = &list["shaft"]["points"][0];
     for key in ["stiffness", "damping"] {
         for point in [own, shaft] {
-            assert_same(key, matrix(&point[key]), matrix(&alone[key]), 1e-9);
+            assert_same_matrix(key, matrix(&point[key]), matrix(&alone[key]), 1e-9);
         }
     }
     for name in OF_RIPPLE {
         let expected = matrix(&alone["ripple"][name]);
-        assert_same(name, matrix(&shaft["ripple"][name]), expected, 1e-9);
+        assert_same_matrix(name, matrix(&shaft["ripple"][name]), expected, 1e-9);
     }
     for key in ["time_s", "speed_rad_per_s", "cage_angle_rad"] {
         assert_eq!(
@@ -317,7 +298,7 @@ fn couplings_by_a_housing_have_the_ripple_of_balls_elsewhere() {
     for (found, elsewhere) in couplings(&found).iter().zip(&couplings(&elsewhere)) {
         let both = [found, elsewhere].map(|coupling| matrix(&coupling["stiffness"][0]));
         for (name, expected) in OF_RIPPLE.into_iter().zip(ripple_of(&both)) {
-            assert_same(name, matrix(&found["ripple"][0][name]), expected, 1e-9);
+            assert_same_matrix(name, matrix(&found["ripple"][0][name]), expected, 1e-9);
         }
     }
 }

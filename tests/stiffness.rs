@@ -3,6 +3,7 @@
 use serde_json::Value;
 
 use crate::util::lockstep::small_motion;
+use crate::util::matrices::matrix;
 use crate::util::tables::{Table, keys, number, summary};
 use crate::util::{Dir, Outcome, RIGID, SCENE, assert_close, with_line};
 
@@ -18,10 +19,6 @@ fn found(dir: &Dir, out: &str, arguments: &[&str]) -> (Outcome, Value) {
     assert_eq!(outcome.code, Some(0), "{}", outcome.stderr);
     let json = serde_json::from_str(&dir.text(&format!("{out}/stiffness.json"))).unwrap();
     (outcome, json)
-}
-
-fn matrix(json: &Value) -> [[f64; 5]; 5] {
-    std::array::from_fn(|i| std::array::from_fn(|j| json[i][j].as_f64().unwrap()))
 }
 
 /// A scene with these loads, tilts locked, in motion at 1800 rpm.

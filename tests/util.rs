@@ -1,6 +1,7 @@
 //! Starts the program in a folder of its own and reads what it leaves there.
 
 pub mod lockstep;
+pub mod matrices;
 pub mod rings;
 pub mod tables;
 

@@ -99,9 +99,6 @@ pub fn resume(request: &ResumeRequest) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Tables of runs over time.
-const OVER_TIME: [&str; 2] = ["dynamic", "quasi_static"];
-
 /// What a rank reads of a run that goes on.
 struct Read {
     record: StepRecord,
@@ -298,7 +295,7 @@ fn require_same_file(path: &Path, overrides: &[String], (stored, dir): (&str, &P
         return Ok(());
     }
     // Each step of a sweep holds the scene of its point.
-    if !changes.iter().any(|change| change.is_below(&OVER_TIME)) {
+    if !changes.iter().any(|change| change.is_below(&OverTime::TABLES)) {
         OverTime::of(&now.analysis, dir)?;
     }
     Err(anyhow!(

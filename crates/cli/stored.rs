@@ -24,6 +24,9 @@ pub enum OverTime {
 }
 
 impl OverTime {
+    /// The tables of scenes that say how long they go.
+    pub const TABLES: [&str; 2] = ["dynamic", "quasi_static"];
+
     /// That of an analysis, whose results are in a folder.
     pub fn of(analysis: &Analysis, dir: &Path) -> Result<OverTime, Failure> {
         let kind = match analysis {
@@ -44,8 +47,8 @@ impl OverTime {
     /// The table of the scene that says how long it goes.
     pub fn table(&self) -> &'static str {
         match self {
-            OverTime::Motion(_) => "dynamic",
-            OverTime::Equilibria(_) => "quasi_static",
+            OverTime::Motion(_) => OverTime::TABLES[0],
+            OverTime::Equilibria(_) => OverTime::TABLES[1],
         }
     }
 

@@ -10,14 +10,14 @@
 //! (1969) 275).
 
 use contact::Side;
-use ring::{RingError, RingModel};
+use ring::RingModel;
 use timer::SharedLaps;
 
 use crate::bearing::{BearingParts, ContactList, SeatStep};
 use crate::bodies::{FlatBody, Inertia, Name};
 use crate::displacements::Displacements;
 use crate::effects::steady_balls::SteadyBalls;
-use crate::effects::{AtEquilibrium, Loads, Now, resultant, static_inertia};
+use crate::effects::{AtEquilibrium, Loads, Now, resultant, static_inertia, sum_of};
 use crate::equilibrium::SearchScales;
 use crate::error::DynamicsError;
 use crate::frame::{turn, turn_nodal};
@@ -318,10 +318,7 @@ pub fn largest_change(old: &[[f64; 2]], new: &[[f64; 2]], scale: f64) -> (f64, u
 
 /// Weights of a ring's nodes under an acceleration in its frame, m/s2: N, `[n_nodes][3]` flat.
 fn nodal_weights((ring, side): (&RingModel, Side), g: [f64; 3]) -> Result<Vec<f64>, DynamicsError> {
-    let masses = ring.node_masses().map_err(|source| RingError::Fem {
-        side: side.name(),
-        source,
-    })?;
+    let masses = ring.node_masses(side.name())?;
     Ok(masses.masses.iter().flat_map(|m| g.map(|a| m * a)).collect())
 }
 
@@ -337,14 +334,10 @@ fn in_frames(
     for (side, inertia) in Side::BOTH.into_iter().zip(inertia) {
         let in_space = loads.rings[side.index()].take();
         let turned = in_space.map(|load| turn_nodal(&load, -pose.frame_angle(side)));
-        let weight = loads.weights[side.index()].zip(model.ring(side));
+        let weight = loads.weights[side.index()].take().zip(model.ring(side));
         let weight = weight
             .map(|(weight, ring)| nodal_weights((ring, side), weight.seen_from(pose.frame_angle(side))));
-        let sum = |a: Vec<f64>, b: Vec<f64>| a.iter().zip(&b).map(|(a, b)| a + b).collect();
-        loads.rings[side.index()] = [turned, weight.transpose()?, inertia]
-            .into_iter()
-            .flatten()
-            .reduce(sum);
+        loads.rings[side.index()] = sum_of([turned, weight.transpose()?, inertia]);
     }
     let inner = model.ring(Side::Inner).zip(loads.rings[0].as_ref());
     if let Some((ring, load)) = inner {

@@ -109,7 +109,7 @@ fn gravity_on_nodal_masses_is_the_body_load() {
         let expected = fem::body_load(&ring.mesh, |_| weight).unwrap();
         let largest = expected.iter().fold(0.0f64, |m, x| m.max(x.abs()));
         let weight = loads.weights[side.index()].unwrap();
-        let masses = ring.node_masses().unwrap();
+        let masses = ring.node_masses(side.name()).unwrap();
         assert_eq!(weight.mass, masses.total);
         let found = masses
             .masses

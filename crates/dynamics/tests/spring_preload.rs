@@ -200,7 +200,7 @@ fn what_slides_has_its_weight() {
     for bearing in bearings() {
         let ring = bearing.rings[1]
             .as_ref()
-            .map_or(0.0, |ring| ring.node_masses().unwrap().total);
+            .map_or(0.0, |ring| ring.node_masses("outer").unwrap().total);
         let mut model = sprung(bearing, 1e6, mass);
         let gravity = Gravity::new([0.0, 0.0, g], Schedule::Constant, &model.rings).unwrap();
         model.effects.push(Box::new(gravity));

@@ -5,7 +5,7 @@ use std::sync::{Arc, Mutex, OnceLock};
 use body::SeatTie;
 use comm::Communicator;
 use contact::{Groove, Side};
-use fem::{FemError, Material};
+use fem::Material;
 use mesh::{
     Mesh, NearlyPeriodic, NotNearlyPeriodic, NotPeriodic, PERIODIC_TOLERANCE, Periodicity,
     find_nearly_periodic, find_periodicity,
@@ -13,6 +13,7 @@ use mesh::{
 use serde::{Deserialize, Serialize};
 
 use crate::division::known::Division;
+use crate::error::RingError;
 use crate::seat::{SeatAction, SeatField};
 
 /// Name of the facet group on which balls run.
@@ -77,12 +78,13 @@ impl RingModel {
             .as_ref()
     }
 
-    /// Masses of the nodes, found when first asked for, from the whole mesh.
-    pub fn node_masses(&self) -> Result<Arc<NodeMasses>, FemError> {
+    /// Masses of the nodes, found when first asked for, from the whole mesh; `side` names the ring in messages.
+    pub fn node_masses(&self, side: &'static str) -> Result<Arc<NodeMasses>, RingError> {
         if self.sectors.node_masses.get().is_none() {
             assert!(self.is_whole(), "the masses of nodes are of the whole mesh");
             let density = self.material.density;
-            let load = fem::body_load(&self.mesh, |_| [density, 0.0, 0.0])?;
+            let load = fem::body_load(&self.mesh, |_| [density, 0.0, 0.0])
+                .map_err(|source| RingError::Fem { side, source })?;
             let masses: Vec<f64> = load.into_iter().step_by(3).collect();
             let mut moment = [0.0; 3];
             for (x, m) in self.mesh.nodes.iter().zip(&masses) {

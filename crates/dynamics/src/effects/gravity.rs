@@ -19,7 +19,7 @@ use super::rules::{Case, judge, percent};
 use super::table::{self, About, Context, Setting, SpeedRole, Trial};
 use crate::error::DynamicsError;
 use crate::model::{Effect, Model};
-use ring::{NodeMasses, RingError, RingModel};
+use ring::{NodeMasses, RingModel};
 
 const EXAMPLE: &str = r#"[effects.gravity]
 acceleration = "9.81 m/s2"
@@ -141,12 +141,8 @@ impl Gravity {
         rings: &[Option<Arc<RingModel>>; 2],
     ) -> Result<Gravity, DynamicsError> {
         let masses = |side: Side| {
-            let masses = |ring: &Arc<RingModel>| {
-                let side = side.name();
-                ring.node_masses()
-                    .map_err(|source| RingError::Fem { side, source })
-            };
-            rings[side.index()].as_ref().map(masses).transpose()
+            let ring = rings[side.index()].as_ref();
+            ring.map(|ring| ring.node_masses(side.name())).transpose()
         };
         Ok(Gravity {
             acceleration,

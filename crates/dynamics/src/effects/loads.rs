@@ -123,6 +123,14 @@ impl Loads {
     }
 }
 
+/// Sum of the loads that there are, of one length; None: none.
+pub(crate) fn sum_of(loads: [Option<Vec<f64>>; 3]) -> Option<Vec<f64>> {
+    loads.into_iter().flatten().reduce(|mut sum, load| {
+        sum.iter_mut().zip(&load).for_each(|(s, l)| *s += l);
+        sum
+    })
+}
+
 /// Force x, y, z, N, and moment about x and y, N m, of nodal loads on a ring (N, `[n_nodes][3]` flat), about the
 /// point `origin_z` of its axis. Collective.
 pub(crate) fn resultant(places: &NodePlaces, origin_z: f64, load: &[f64]) -> [f64; 5] {

@@ -31,8 +31,8 @@ pub use ball_centrifugal::BallCentrifugal;
 pub use frame_rotation::{FrameRotation, static_inertia};
 pub use gravity::Gravity;
 pub use gyroscopic_moment::{GyroscopicMoment, MomentShares};
-pub(crate) use loads::resultant;
 pub use loads::{AtEquilibrium, FrameTurn, Loads, Now, RingWeight};
+pub(crate) use loads::{resultant, sum_of};
 
 pub use crate::model::Effect;
 pub use moment::Moment;

@@ -13,7 +13,7 @@ use super::run::Motion;
 use super::span::PartSpan;
 use super::state::MotionState;
 use super::state::PatchPlace;
-use crate::effects::Loads;
+use crate::effects::{Loads, sum_of};
 use crate::error::DynamicsError;
 use crate::frame::turn_nodal;
 
@@ -103,12 +103,7 @@ impl Motion<'_> {
             .and_then(|moving| moving.weights.as_deref())
             .zip(loads.weights[side.index()]);
         let weight = weight.map(|(unit, weight)| unit.load(weight.seen_from(angle)));
-        let known = [nodal, weight, self.undeformed_load(side, loads)];
-        let sum = |mut a: Vec<f64>, b: Vec<f64>| {
-            a.iter_mut().zip(&b).for_each(|(a, b)| *a += b);
-            a
-        };
-        let load = known.into_iter().flatten().reduce(sum);
+        let load = sum_of([nodal, weight, self.undeformed_load(side, loads)]);
         KnownLoad {
             load,
             turn: self.elastic_turn(side, loads),

@@ -8,7 +8,6 @@ use contact::Side;
 use super::run::Motion;
 use super::state::MotionState;
 use crate::error::DynamicsError;
-use ring::RingError;
 
 impl Motion<'_> {
     /// Energy of the round-off of both flexible rings, J: epsilon/2 times the sum of K_ii w_i^2, with K_ii = E h of an
@@ -20,10 +19,7 @@ impl Motion<'_> {
             else {
                 continue;
             };
-            let masses = ring.node_masses().map_err(|source| RingError::Fem {
-                side: side.name(),
-                source,
-            })?;
+            let masses = ring.node_masses(side.name())?;
             let volume = masses.total / ring.material.density;
             let stiffness = ring.material.young_modulus * (volume / ring.mesh.n_nodes() as f64).cbrt();
             sum += stiffness * w.iter().map(|w| w * w).sum::<f64>();
