@@ -171,3 +171,33 @@ fn a_wrong_seat_of_a_housing_of_matrices_is_named() {
         "empty.csv: no node; expected lines node or node,area",
     );
 }
+
+/// If this failed, a slip by thousands in the unit of a matrix, or the wrong file, would change the answer without a
+/// word. With sound units nothing is said.
+#[test]
+fn units_that_make_no_solid_are_doubted() {
+    let dir = delivered();
+    write_housing(&dir);
+    let few = FEW[..].to_vec();
+    let doubts = |analysis: &str, [from, to]: [&str; 2]| {
+        let [_, text] = scene(&dir, analysis);
+        assert!(from.is_empty() || text.contains(from), "{from}");
+        dir.write("odd.toml", text.replace(from, to));
+        let said = dir.raceway(&[&["check", "odd.toml"], &few[..]].concat());
+        assert_eq!(said.code, Some(0), "{}", said.stderr);
+        said.stdout + &said.stderr
+    };
+    let modes = "[modes]\nnumber = 6\nbodies = [\"bearing\"]";
+    let sound = doubts(modes, ["\"kg\"", "\"kg\""]);
+    assert!(!sound.contains("check stiffness_unit") && !sound.contains("check mass_unit"), "{sound}");
+    assert!(sound.contains(", as stiff as a solid of "), "{sound}");
+    let stiff = doubts("[static]", ["\"N/m\"", "\"N/mm\""]);
+    let part = "body \"housing\": between its nodes it is as stiff as a solid of ";
+    let line = stiff.lines().find(|line| line.contains(part)).expect(&stiff);
+    let rest = " GPa, expected 1 to 5000 GPa: check stiffness_unit and length_unit, and that `stiffness` is not the file \
+                of the mass";
+    assert!(line.ends_with(rest), "{line}");
+    let heavy = doubts(modes, ["\"kg\"", "\"g\""]);
+    let part = "of the box round its nodes, expected 20 to 5e5 kg/m3: check mass_unit and length_unit";
+    assert!(heavy.contains(part), "{heavy}");
+}

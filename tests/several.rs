@@ -114,6 +114,32 @@ fn a_list_of_one_bearing_gives_the_same_bits() {
     }
 }
 
+/// Wrong: the same of elastic rings at rest and in motion.
+#[test]
+fn a_list_of_one_elastic_bearing_gives_the_same_bits() {
+    const ONE: &str = "[[bearing]]\nname = \"front\"\nposition = \"0 mm\"\norientation = \"+z\"\n\
+                       type = \"types/kind.toml\"\n\n[shaft]\nmodel = \"rigid\"";
+    let dir = flexible_pair("[static]");
+    let analyses = [
+        ("rest", "[static]"),
+        ("motion", "[dynamic]\nduration = \"0.2 ms\"\nstep = \"20 us\"\n\n[speed]\ninner = \"12000 rpm\""),
+    ];
+    for (name, analysis) in analyses {
+        let [kind, rest] = parts();
+        let rest = rest.replace("[static]", analysis).replace("\"2 kN\"", "\"0.4 kN\"");
+        let kind = kind.replace("mesh = \"", "mesh = \"types/");
+        dir.write("single.toml", format!("{rest}\n{kind}"));
+        dir.write("list.toml", rest.replace("[shaft]", ONE));
+        let [single, list] = ["single", "list"].map(|form| format!("{name}_{form}"));
+        succeeds(&dir, &["run", "single.toml", "--out", &single]);
+        succeeds(&dir, &["run", "list.toml", "--out", &list]);
+        for table in ["balls.csv", "shaft.csv", "energy.csv"] {
+            let same = dir.text(&format!("{single}/{table}")) == dir.text(&format!("{list}/{table}"));
+            assert!(same, "{name}: {table}");
+        }
+    }
+}
+
 /// Wrong: tables would lack a bearing or its name, forces not balance, or the folder of a bearing be no results.
 #[test]
 fn a_pair_leaves_tables_of_both_and_a_folder_for_each() {
@@ -224,6 +250,19 @@ fn the_meshes_of_a_list_are_built_once_each() {
     let part =
         "types/inner.msh exists already; give --force to replace it, or another mesh name in the scene";
     assert!(refused.stderr.contains(part), "{}", refused.stderr);
+    // Of two meshes the one that is there is kept.
+    let kept = dir.text("types/inner.section.msh");
+    std::fs::remove_file(dir.path("types/outer.msh")).unwrap();
+    std::fs::remove_file(dir.path("types/outer.section.msh")).unwrap();
+    let said = succeeds(&dir, &["mesh", "pair.toml"]);
+    assert!(said.stdout.contains("types/outer.msh: "), "{}", said.stdout);
+    assert!(
+        said.stderr
+            .contains("types/inner.msh exists already and is kept; --force replaces it"),
+        "{}",
+        said.stderr
+    );
+    assert_eq!(kept, dir.text("types/inner.section.msh"));
     // Another type that names the same files.
     dir.write("types/other.toml", with_sections(54));
     let (head, tail) = PAIR.split_once("[pairing]").unwrap();

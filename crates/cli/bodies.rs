@@ -30,8 +30,12 @@ pub fn print_bodies<'m>(models: impl Iterator<Item = &'m Model>) {
                 1 => "a seat".to_string(),
                 n => format!("{n} seats"),
             };
+            let like = body.apparent.map_or(String::new(), |like| {
+                let mass = like.mass.map_or(String::new(), |[kg, _]| format!(", {kg:.3} kg"));
+                format!(", as stiff as a solid of {:.3} GPa{mass}", 1e-9 * like.modulus)
+            });
             print::line(format_args!(
-                "body     {:?} round the {} ring: {} dofs, {} functions of {seats}, {:.1} MB{modes}",
+                "body     {:?} round the {} ring: {} dofs, {} functions of {seats}, {:.1} MB{like}{modes}",
                 body.name,
                 side.name(),
                 body.n_dofs,

@@ -55,7 +55,7 @@ pub enum SurroundingError {
     /// More modes than can be kept.
     #[error(
         "body \"{body}\" has more than {most} natural modes below {below_hz} Hz with its seat held; lower \
-         body.modes_below"
+         body.modes_below{doubt}"
     )]
     TooManyModes {
         /// Name of the body.
@@ -64,6 +64,8 @@ pub enum SurroundingError {
         below_hz: f64,
         /// How many may be kept.
         most: usize,
+        /// What is odd of its matrices, after a semicolon.
+        doubt: String,
     },
     /// A group that is not in the mesh.
     #[error(

@@ -9,6 +9,7 @@
 //! across. The factor is kept for the displacement of the whole body. In motion a body is reduced to these functions
 //! and its own modes up to a frequency ([`BodyModes`]).
 
+pub mod apparent;
 mod areas;
 mod carried;
 mod definite;

@@ -10,6 +10,7 @@ use rayon::prelude::*;
 use solver::{LinearSolver, SolverError, SparseCholesky, Symbolic, angular_dissection, expand};
 use sprs::CsMat;
 
+use crate::apparent::Apparent;
 use crate::carried::Carried;
 use crate::definite::require_positive_mass;
 use crate::error::{SurroundingError, direction, mesh_advice};
@@ -39,6 +40,8 @@ pub struct Surrounding {
     pub n_dofs: usize,
     /// Bytes of the factor, the functionals and the flexibility.
     pub bytes: usize,
+    /// What its numbers would mean, of a body of matrices.
+    pub apparent: Option<Apparent>,
     /// How a shaft carries it; None of a body that stands.
     pub carried: Option<Carried>,
     /// Bytes of K.
@@ -140,6 +143,7 @@ impl Surrounding {
             clique: 2,
         };
         let mut body = held.condense(joints, start)?;
+        body.apparent = matrix.apparent();
         let free = |of: &CsMat<f64>| solver::restrict(of, &body.free);
         if let Some(mass) = &matrix.mass {
             require_positive_mass(matrix, (name, mass), (&body.free, &pairs))?;
@@ -225,6 +229,7 @@ impl Unfactored<'_> {
         let mut body = Surrounding {
             name: self.name,
             mesh: None,
+            apparent: None,
             carried: None,
             shift,
             flexibility: Vec::new(),

@@ -125,10 +125,19 @@ impl HeldSeats<'_> {
                     body: self.body.name.clone(),
                     below_hz,
                     most: MOST_MODES,
+                    doubt: self.doubt(),
                 });
             }
             wanted = (2 * wanted).min(most_pairs);
         }
+    }
+}
+
+impl HeldSeats<'_> {
+    /// What is odd of the body's matrices, for the end of a message.
+    fn doubt(&self) -> String {
+        let doubts = self.body.apparent.map(|apparent| apparent.doubts(&self.body.name));
+        doubts.iter().flatten().map(|doubt| format!("; {doubt}")).collect()
     }
 }
 

@@ -19,6 +19,9 @@ use ring::RingModel;
 const RIM_SHARE: f64 = 0.05;
 /// Force over the largest below which a contact is unloaded: what Newton leaves on balls that touch without load.
 const LOADED_SHARE: f64 = 1e-9;
+/// Force over the largest below which a contact may stand beyond the rim of a flexible ring's groove, and acts on the
+/// ring just inside it: a ball that lies between the shoulders by its own weight changes nothing.
+const SLIGHT_SHARE: f64 = 1e-3;
 
 /// Samples of a faceted groove from rim to rim.
 const FACET_SAMPLES: usize = 200;
@@ -95,7 +98,16 @@ fn place_patch(
 
 /// Which contacts carry load, by site, from the sizes of their forces, N.
 pub fn loaded(forces: impl Iterator<Item = f64> + Clone) -> Vec<bool> {
-    let limit = LOADED_SHARE * forces.clone().fold(0.0, f64::max);
+    above(LOADED_SHARE, forces)
+}
+
+/// Which contacts carry more than a slight load.
+pub fn well_loaded(forces: impl Iterator<Item = f64> + Clone) -> Vec<bool> {
+    above(SLIGHT_SHARE, forces)
+}
+
+fn above(share: f64, forces: impl Iterator<Item = f64> + Clone) -> Vec<bool> {
+    let limit = share * forces.clone().fold(0.0, f64::max);
     forces.map(|force| force > limit).collect()
 }
 
@@ -115,7 +127,8 @@ pub fn on_groove(surface: &RacewaySurface, angle: f64, loaded: bool) -> f64 {
     angle.clamp(low + rim, high - rim)
 }
 
-/// Fails when a loaded ball of an equilibrium lies beyond the rim of a flexible ring's groove.
+/// Fails when a ball of an equilibrium that carries more than a slight load lies beyond the rim of a flexible ring's
+/// groove.
 pub fn check_on_groove(
     surface: &RacewaySurface,
     sites: &[Site],
@@ -123,8 +136,8 @@ pub fn check_on_groove(
     forces: &[[f64; 2]],
 ) -> Result<(), DynamicsError> {
     let of_ring = |site: &Site| site.side == surface.groove.side;
-    let contacts = sites.iter().zip(states).zip(loaded(sizes(forces)));
-    for ((site, state), _) in contacts.filter(|((site, _), loaded)| *loaded && of_ring(site)) {
+    let contacts = sites.iter().zip(states).zip(well_loaded(sizes(forces)));
+    for ((site, state), _) in contacts.filter(|((site, _), presses)| *presses && of_ring(site)) {
         require_on_groove(surface, site.ball, state.angle)?;
     }
     Ok(())

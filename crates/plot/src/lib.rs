@@ -185,6 +185,12 @@ pub fn figures(dir: &Path, choice: &Choice) -> Result<Figures, Failure> {
     }
     match (drawn.is_empty(), first) {
         (true, Some(error)) => Err(error.into()),
+        (true, None) if dir.join("stiffness.json").exists() => Err(anyhow!(
+            "{} has the stiffness at one point, of which there is no figure; expected that of a sweep, a ripple or a \
+             time",
+            dir.display()
+        )
+        .into()),
         (true, None) => Err(anyhow!(
             "{} has nothing to plot; expected the tables or step files of a run, such as balls.csv",
             dir.display()

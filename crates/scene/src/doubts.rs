@@ -7,6 +7,7 @@
 
 use std::ops::RangeInclusive;
 
+use body::Surrounding;
 use contact::Side;
 use contact::surface::felt::felt;
 use dynamics::kinematics::BallSpeeds;
@@ -59,6 +60,7 @@ pub fn doubts(scene: &Scene, model: &Model) -> Vec<String> {
     if scene.ball_speeds == BallSpeeds::OuterControl {
         lines.push(OUTER_CONTROL.to_string());
     }
+    lines.extend(odd_matrices(model));
     lines.extend(unusual_stiffnesses(&scene.contact, &scene.bearing, materials));
     lines.extend(unresolved(scene, &model.geometry, model.surfaces.half_widths));
     lines.extend(filtered(scene, model));
@@ -68,6 +70,14 @@ pub fn doubts(scene: &Scene, model: &Model) -> Vec<String> {
         lines.push(WHOLE_ELLIPSES.to_string());
     }
     lines
+}
+
+/// Says which bodies of matrices are like no solid.
+fn odd_matrices(model: &Model) -> Vec<String> {
+    let tie = |side| model.tied(side).and_then(|ring| ring.tie.as_ref());
+    let bodies = Side::BOTH.into_iter().filter_map(|side| tie(side)?.body.as_ref());
+    let doubts = |body: &Surrounding| Some(body.apparent?.doubts(&body.name));
+    bodies.filter_map(|body| doubts(body)).flatten().collect()
 }
 
 /// Says how weakly ellipses feel the shortest waves of a ring, or of a ball.

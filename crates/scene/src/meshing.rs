@@ -39,14 +39,18 @@ pub fn build_meshes(
             path: path.to_path_buf(),
         });
     }
-    for job in &jobs {
-        if overwrite == Overwrite::Refuse && job.body.mesh.exists() {
-            return Err(BuildError::Exists {
-                path: job.body.mesh.clone(),
-            });
-        }
+    let is_kept = |job: &Job<'_>| overwrite == Overwrite::Refuse && job.body.mesh.exists();
+    let (kept, wanted): (Vec<Job<'_>>, Vec<Job<'_>>) = jobs.into_iter().partition(is_kept);
+    if let (Some(first), true) = (kept.first(), wanted.is_empty()) {
+        return Err(BuildError::Exists {
+            path: first.body.mesh.clone(),
+        });
     }
-    jobs.iter().try_for_each(|job| build_file(job, overwrite, gmsh))
+    for job in &kept {
+        let path = job.body.mesh.display();
+        print::note(format_args!("{path} exists already and is kept; --force replaces it"));
+    }
+    wanted.iter().try_for_each(|job| build_file(job, overwrite, gmsh))
 }
 
 /// Says once what bearings leave open.

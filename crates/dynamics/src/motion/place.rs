@@ -21,7 +21,7 @@ use super::solve::StepSolution;
 use super::state::{MotionState, PatchPlace};
 use crate::bearing::BearingParts;
 use crate::error::DynamicsError;
-use crate::footprint::{loaded, on_groove, require_on_groove};
+use crate::footprint::{loaded, on_groove, require_on_groove, well_loaded};
 use crate::interactions::discrete_gradient::MeanForce;
 use crate::interactions::raceway_contact::Site;
 use crate::model::{Model, elastic};
@@ -223,11 +223,12 @@ impl Motion<'_> {
         })
     }
 
-    /// Fails when a loaded ball of a part lies beyond the rim of a flexible ring's groove.
+    /// Fails when a ball of a part that carries more than a slight load lies beyond the rim of a flexible ring's
+    /// groove.
     pub(super) fn check_on_grooves(&self, met: &[PatchPlace]) -> Result<(), DynamicsError> {
-        let loaded = loaded(met.iter().map(|place| place.force));
-        for (index, (place, loaded)) in met.iter().zip(loaded).enumerate() {
-            if let (Some(moving), true) = (&self.rings[index % 2], loaded) {
+        let presses = well_loaded(met.iter().map(|place| place.force));
+        for (index, (place, presses)) in met.iter().zip(presses).enumerate() {
+            if let (Some(moving), true) = (&self.rings[index % 2], presses) {
                 require_on_groove(&moving.raceway.surface, index / 2, place.angle)?;
             }
         }

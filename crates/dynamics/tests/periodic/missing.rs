@@ -122,6 +122,37 @@ fn loosened(side: Side, mut mesh: Mesh) -> Mesh {
     mesh
 }
 
+/// A ring whose clamped surface is its lower quarter alone.
+fn clasped(side: Side, mut mesh: Mesh) -> Mesh {
+    let group = match side {
+        Side::Inner => "bore",
+        Side::Outer => "seat",
+    };
+    let mut kept = mesh.group(group).to_vec();
+    kept.retain(|facet| {
+        let [x, y, _] = mesh.element_centre(facet.element);
+        y < -0.7 * x.hypot(y)
+    });
+    mesh.groups.insert(group.to_string(), kept);
+    mesh
+}
+
+/// Wrong: a ring that is clamped on less than half of its seat would be that of a regular ring that nothing holds.
+#[test]
+fn a_ring_that_is_clamped_on_a_quarter_of_its_seat_has_no_regular_ring() {
+    let ends = [Backend::Auto, Backend::Sparse].map(|backend| {
+        let model = with_meshes(HEX8, Hold::Clamped, backend, clasped);
+        statics(&model, "sparse").balls[3].inner.force_n
+    });
+    assert_eq!(ends[0], ends[1]);
+    let model = with_meshes(HEX8, Hold::Clamped, Backend::Cyclic, clasped);
+    let error = StaticSolver::new(&model).err().unwrap().to_string();
+    assert!(error.ends_with("what holds it reaches less than half round"), "{error}");
+    assert_same_statics(Hold::MeanMotion, |backend| {
+        with_meshes(HEX8, Hold::MeanMotion, backend, clasped)
+    });
+}
+
 /// A ring in its mean motion bends 1e5 times more easily than its elements strain, and their rounding shows in it as
 /// often.
 fn assert_same_statics(hold: Hold, build: impl Fn(Backend) -> Model) {

@@ -2,7 +2,8 @@
 //!
 //! A section node is held in the regular ring when it is held in most sectors. Nodes that are held besides are like
 //! absent ones: the regular ring has rows there that the true one lacks. Nodes that are free where most of their
-//! images are held are *loose*: rows that the regular ring lacks.
+//! images are held are *loose*: rows that the regular ring lacks. A ring whose holds reach less than half round has no
+//! regular ring, which would be held nowhere: its matrix at rest is singular.
 
 use std::collections::BTreeSet;
 
@@ -40,6 +41,9 @@ impl RegularRing {
             is_held[node] = true;
         }
         let is_section_held: Vec<bool> = held_in.iter().map(|n| 2 * n > periodicity.n_sectors()).collect();
+        if !held.is_empty() && !is_section_held.contains(&true) {
+            return Err("what holds it reaches less than half round".to_string());
+        }
         let is_regular = |node: usize| is_section_held[sites[node].section_node];
         let raceway = ring.mesh.group_nodes(RACEWAY_GROUP);
         if let Some(node) = raceway.iter().find(|&&node| is_held[node]) {

@@ -221,7 +221,8 @@ fn refuse_beside_body(name: &str, ring: RingName, context: &BodyContext<'_>, pro
     for (effect, why) in refused {
         if context.effects.contains(effect) {
             problems.add(format!(
-                "effects.{effect} does not go with body {name:?}: {why}; remove one of them"
+                "effects.{effect}{} does not go with body {name:?}: {why}; remove one of them",
+                if *effect == "spring_preload" { ", or pairing.spring," } else { "" }
             ));
         }
     }

@@ -186,6 +186,8 @@ fn describe(text: &str, span: Range<usize>, message: &str) -> String {
     }
     if path.is_empty() {
         message
+    } else if message == "invalid type: map, expected a sequence" {
+        format!("[{path}] is one table, expected a list of them: write [[{path}]] with two brackets")
     } else {
         format!("{path}: {message}")
     }
