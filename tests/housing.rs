@@ -202,9 +202,10 @@ fn with_analysis(dir: &Dir, name: &str, analysis: &str) {
     dir.write(name, text.replace("../meshes", "meshes"));
 }
 
-/// It turns at 3000 rpm with an unbalance; 12 steps, a file every fourth.
+/// It turns at 3000 rpm with an unbalance under gravity; 12 steps, a file every fourth.
 pub fn in_motion(dir: &Dir) {
     let motion = "[speed]\ninner = \"3000 rpm\"\n[effects.unbalance]\nmass = \"20 g\"\neccentricity = \"30 mm\"\n\
+                  [effects.gravity]\nacceleration = \"9.81 m/s2\"\ndirection = [0.0, -1.0, 0.0]\n\
                   [dynamic]\nduration = \"240 us\"\nstep = \"20 us\"\noutput_every = 4\n";
     with_analysis(dir, "motion.toml", motion);
 }

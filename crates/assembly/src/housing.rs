@@ -253,10 +253,10 @@ impl SharedBody {
         let mut forces = self.none();
         for (&i, (tie, functions)) in self.bearings.iter().zip(&self.seats) {
             let ring = self.side.index();
-            let others = bearings[i].model.other_seats[ring].as_ref();
-            let others = others.map(|others| others.as_slice());
+            let model = &bearings[i].model;
+            let acting = model.acting(self.side, solutions[i].body_load(model, self.side));
             let field = solutions[i].elastic[ring].as_ref();
-            let traction = field.and_then(|field| tie.traction(functions, field, others));
+            let traction = field.and_then(|field| tie.traction(functions, field, acting));
             let traction = traction.ok_or_else(|| AssemblyError::NoSeatForces {
                 body: self.name.clone(),
                 bearing: bearings[i].name.clone(),

@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use crate::carried::{N_SHAFT, ShaftPlace, combined, dot};
 use crate::frame::FrameForms;
+use crate::loads::ModalLoads;
 use crate::rows::lane_dot;
 
 /// A body as oscillators.
@@ -30,6 +31,8 @@ pub struct BodyModes {
     pub(crate) on_shaft: Option<ShaftShares>,
     /// Inertia of the turning frame of such a body.
     pub frame: Option<Box<FrameForms>>,
+    /// Loads on all of the body, where a scene asks for any.
+    pub(crate) loads: Option<Box<ModalLoads>>,
 }
 
 /// How oscillators move the shaft that carries their body, at the bearing of its first seat. The first [`N_SHAFT`] are
@@ -113,6 +116,7 @@ impl BodyModes {
             fixed: Vec::new(),
             on_shaft: None,
             frame: None,
+            loads: None,
         }
     }
 
@@ -161,7 +165,8 @@ impl BodyModes {
             &self.fixed,
         ];
         let frame = self.frame.as_ref().map_or(0, |frame| frame.bytes());
-        frame + size_of::<f64>() * lists.iter().map(|list| list.len()).sum::<usize>()
+        let loads = self.loads.as_ref().map_or(0, |loads| loads.bytes());
+        frame + loads + size_of::<f64>() * lists.iter().map(|list| list.len()).sum::<usize>()
     }
 }
 

@@ -27,6 +27,12 @@ impl<'a> RigidPart<'a> {
         }
     }
 
+    /// Rigid oscillators of a displacement of the free dofs that the shaft does not take along, m.
+    pub fn momentum(&self, moved: &[f64]) -> [f64; N_SHAFT] {
+        let pushed = [0, 1, 2, 3, 4].map(|k| dot(&self.carried.pushes[k], moved));
+        self.motions.each_ref().map(|motion| dot(motion, &pushed))
+    }
+
     /// Takes the momentum of the coordinates out of their mass, by rows of its lower triangle.
     pub fn relieve(&self, lower: &mut [Vec<f64>]) {
         for (i, row) in lower.iter_mut().enumerate() {

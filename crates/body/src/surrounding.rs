@@ -15,6 +15,7 @@ use crate::carried::Carried;
 use crate::definite::require_positive_mass;
 use crate::error::{SurroundingError, direction, mesh_advice};
 use crate::joint::{BodySeat, SeatJoint, joint, refuse_fixed};
+use crate::loads::UnitLoads;
 use crate::matrix::MatrixBody;
 use crate::seat::SeatFunctions;
 
@@ -44,6 +45,8 @@ pub struct Surrounding {
     pub apparent: Option<Apparent>,
     /// How a shaft carries it; None of a body that stands.
     pub carried: Option<Carried>,
+    /// What loads on all of it do, where a scene asks for any.
+    pub loads: Option<UnitLoads>,
     /// Bytes of K.
     matrix_bytes: usize,
     /// Wall time of assembly, factor and columns, s.
@@ -198,11 +201,7 @@ impl Surrounding {
     pub fn displacement(&self, lam: &[f64]) -> Vec<f64> {
         let mut moved = self.seat_loads(lam);
         self.factor.solve(&mut moved, 1);
-        let mut field = vec![0.0; self.n_dofs];
-        for (&dof, u) in self.free.iter().zip(moved) {
-            field[dof] = u;
-        }
-        field
+        self.on_all_dofs(&moved)
     }
 }
 
@@ -231,6 +230,7 @@ impl Unfactored<'_> {
             mesh: None,
             apparent: None,
             carried: None,
+            loads: None,
             shift,
             flexibility: Vec::new(),
             n_dofs: 3 * self.places.len(),
@@ -359,6 +359,15 @@ impl Surrounding {
             .map(|chunk| self.solved_units(chunk))
             .collect();
         columns.concat()
+    }
+
+    /// A displacement of the free dofs on all of them.
+    pub(crate) fn on_all_dofs(&self, moved: &[f64]) -> Vec<f64> {
+        let mut field = vec![0.0; self.n_dofs];
+        for (&dof, u) in self.free.iter().zip(moved) {
+            field[dof] = *u;
+        }
+        field
     }
 
     /// Phi lam, loads of forces on all functions, on free dofs.

@@ -5,7 +5,8 @@ use std::sync::Arc;
 
 use dense::DenseCholesky;
 
-use crate::carried::{Carried, CarriedInertia, N_SHAFT};
+use crate::carried::{Carried, CarriedInertia, N_SHAFT, dot};
+use crate::loads::{BesideRing, BodyLoad, ModalLoads, N_LOADS};
 use crate::oscillators::{BodyModes, SeatModes, ShaftAtSeat};
 use crate::seat::{SeatBasis, SeatFunctions, SeatSpace};
 use crate::surrounding::Surrounding;
@@ -118,6 +119,89 @@ impl SeatTie {
             .collect()
     }
 
+    /// Motion of the seat, m, by what acts on the body besides its ring; None: nothing does.
+    pub fn moved_by(&self, acting: BesideRing<'_>) -> Option<Vec<f64>> {
+        let by_others = acting.others.map(|others| self.motion_by(others));
+        let Some(by_load) = self.moved_by_load(acting.load) else {
+            return by_others;
+        };
+        let mut moved = by_others.unwrap_or_else(|| vec![0.0; by_load.len()]);
+        moved.iter_mut().zip(by_load).for_each(|(d, s)| *d += s);
+        Some(moved)
+    }
+
+    /// Motion of the seat by a load on all of the body, m; None: the body takes none.
+    fn moved_by_load(&self, load: Option<BodyLoad>) -> Option<Vec<f64>> {
+        let body = self.body.as_ref()?;
+        let factors = body.factors(self.seat, load)?;
+        let all = body.loads.as_ref()?.seat_motion(factors);
+        Some(all[self.own()].to_vec())
+    }
+
+    /// Work of a load on all of the body at rest over its displacement, J: that by the forces of this joint, and at the
+    /// first seat that by the load itself. Summed over the seats of a body it is all.
+    pub fn load_work(&self, traction: &SeatTraction, load: Option<BodyLoad>) -> f64 {
+        let (Some(body), Some(moved)) = (&self.body, self.moved_by_load(load)) else {
+            return 0.0;
+        };
+        let by_joint = -dot(&traction.forces, &moved);
+        let factors = body.factors(self.seat, load).filter(|_| self.seat == 0);
+        let own = factors.zip(body.loads.as_ref());
+        by_joint + own.map_or(0.0, |(factors, loads)| loads.own_work(&body.free, factors))
+    }
+
+    /// Strain energy that the joint and a load on all of the body put into it, J; summed over its seats it is all.
+    pub fn energy(&self, traction: &SeatTraction, load: Option<BodyLoad>) -> f64 {
+        traction.energy() + 0.5 * self.load_work(traction, load)
+    }
+
+    /// Displacement of the body at rest, m, `[n_nodes][3]` flat, of one on a shaft beside that of the shaft; None for a
+    /// rigid body.
+    pub fn displacement(&self, traction: &SeatTraction, acting: BesideRing<'_>) -> Option<Vec<f64>> {
+        let body = self.body.as_ref()?;
+        let mut field = body.displacement(&self.forces_on_body(traction, acting.others));
+        if let (Some(factors), Some(loads)) = (body.factors(self.seat, acting.load), &body.loads) {
+            let by_load = loads.displacement(factors);
+            field.iter_mut().zip(by_load).for_each(|(u, v)| *u += v);
+        }
+        Some(field)
+    }
+
+    /// Displacement of the body in motion, m, `[n_nodes][3]` flat, of its oscillators and what these leave out of that
+    /// by a load on all of it; None for a rigid body.
+    pub fn moved(&self, oscillators: &[f64], load: Option<BodyLoad>) -> Option<Vec<f64>> {
+        let (body, modes) = (self.body.as_ref()?, &self.modes.as_ref()?.of_body);
+        let mut field = body.moved(modes, oscillators);
+        if let (Some(factors), Some(loads)) = (body.factors(self.seat, load), &modes.loads) {
+            let beyond = loads.beyond(factors);
+            field.iter_mut().zip(beyond).for_each(|(u, v)| *u += v);
+        }
+        Some(field)
+    }
+
+    /// Loads on the oscillators of a load on all of the body; empty: none.
+    pub fn on_oscillators(&self, load: Option<BodyLoad>) -> Vec<f64> {
+        self.of_load(load, ModalLoads::on_oscillators)
+    }
+
+    /// Where the oscillators stand under a load on all of the body; empty: there is none.
+    pub fn at_rest_under(&self, load: Option<BodyLoad>) -> Vec<f64> {
+        self.of_load(load, ModalLoads::at_rest)
+    }
+
+    fn of_load(
+        &self,
+        load: Option<BodyLoad>,
+        see: impl Fn(&ModalLoads, [f64; N_LOADS]) -> Vec<f64>,
+    ) -> Vec<f64> {
+        let loads = self.modes.as_ref().and_then(|modes| modes.of_body.loads.as_ref());
+        let factors = self.body.as_ref().and_then(|body| body.factors(self.seat, load));
+        match (loads, factors) {
+            (Some(loads), Some(factors)) => see(loads, factors),
+            _ => Vec::new(),
+        }
+    }
+
     /// A joint with a rigid body.
     pub fn to_rigid(space: SeatSpace) -> SeatTie {
         let n = space.basis.n_functions();
@@ -130,22 +214,21 @@ impl SeatTie {
         }
     }
 
-    /// What the joint carries when the ring stands as displaced, m, `[n_nodes][3]` flat, under forces on the other
-    /// seats of the body, N, `[n_functions of all seats]`; None for a rigid body.
+    /// What the joint carries when the ring stands as displaced, m, `[n_nodes][3]` flat, and something else acts on the
+    /// body; None for a rigid body.
     ///
-    /// The body follows from its own flexibility: lam = -F^-1 (g - d), d its motion by those forces.
+    /// The body follows from its own flexibility: lam = -F^-1 (g - d), d the motion of the seat by what else acts.
     pub fn traction(
         &self,
         ring: &SeatFunctions,
         displacement: &[f64],
-        others: Option<&[f64]>,
+        acting: BesideRing<'_>,
     ) -> Option<SeatTraction> {
         self.body.as_ref()?;
         let motion = ring.measure(displacement);
         let factor = DenseCholesky::factor(motion.len(), &self.flexibility).ok()?;
         let mut forces: Vec<f64> = motion.iter().map(|g| -g).collect();
-        if let Some(others) = others {
-            let moved = self.motion_by(others);
+        if let Some(moved) = self.moved_by(acting) {
             forces.iter_mut().zip(moved).for_each(|(f, d)| *f += d);
         }
         factor.solve(&mut forces, 1);
@@ -163,7 +246,7 @@ impl SeatTie {
 }
 
 impl SeatTraction {
-    /// Strain energy of the body, J.
+    /// Strain energy that the forces of the joint put into the body, J.
     pub fn energy(&self) -> f64 {
         -0.5 * self.products().sum::<f64>()
     }

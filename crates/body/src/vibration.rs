@@ -71,6 +71,12 @@ impl Surrounding {
         if let (Some(_), Some((mesh, material))) = (&self.carried, &self.mesh) {
             modes.frame = Some(Box::new(self.frame_forms((mesh, material), &modes, &columns)?));
         }
+        let by_forces = |seats: &[f64]| {
+            let mut forces = seats.to_vec();
+            held.flexibility.solve(&mut forces, 1);
+            forces
+        };
+        modes.loads = self.modal_loads(&modes, &fixed.values, by_forces).map(Box::new);
         Ok(modes)
     }
 

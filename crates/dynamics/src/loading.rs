@@ -338,6 +338,7 @@ fn in_frames(
         let weight = weight
             .map(|(weight, ring)| nodal_weights((ring, side), weight.seen_from(pose.frame_angle(side))));
         loads.rings[side.index()] = sum_of([turned, weight.transpose()?, inertia]);
+        loads.bodies[side.index()] = model.body_load(side, &pose.now, pose.frame_angle(side));
     }
     let inner = model.ring(Side::Inner).zip(loads.rings[0].as_ref());
     if let Some((ring, load)) = inner {

@@ -9,6 +9,7 @@
 
 use std::sync::Arc;
 
+use body::{BesideRing, BodyLoad};
 use contact::film::FilmContact;
 use contact::hertz::Elastic;
 use contact::{BearingGeometry, HertzContact, LeastSize, Meridian, NodalWeights, Side, SphereCompliance};
@@ -20,7 +21,7 @@ use serde::Deserialize;
 use timer::SharedLaps;
 
 use crate::balls::BallResult;
-use crate::effects::{Loads, Now};
+use crate::effects::{Loads, Now, seen_from};
 use crate::error::DynamicsError;
 use crate::interactions::cage::design::Cage;
 use crate::interactions::seat_spring::Seat;
@@ -301,10 +302,35 @@ impl Model {
             .next()
     }
 
-    /// Motion of the seat of a ring by forces on the other seats of its body, by functions, m; None: none.
-    pub(crate) fn seat_motion(&self, side: Side) -> Option<Vec<f64>> {
-        let others = self.other_seats[side.index()].as_ref()?;
-        Some(self.ring(side)?.tie.as_ref()?.motion_by(others))
+    /// What acts on the body of a ring at rest besides the ring.
+    pub fn acting(&self, side: Side, load: Option<BodyLoad>) -> BesideRing<'_> {
+        BesideRing {
+            others: self.other_seats[side.index()]
+                .as_ref()
+                .map(|others| others.as_slice()),
+            load,
+        }
+    }
+
+    /// Load on all of the body of a ring at an instant, seen from the frame of the ring, which is turned by an angle,
+    /// rad; None where the body takes none.
+    pub fn body_load(&self, side: Side, now: &Now, angle: f64) -> Option<BodyLoad> {
+        self.ring(side)?.tie.as_ref()?.body.as_ref()?.loads.as_ref()?;
+        let mut acceleration = [0.0; 3];
+        for effect in &self.effects {
+            let of_effect = effect.acceleration(now);
+            (0..3).for_each(|i| acceleration[i] += of_effect[i]);
+        }
+        let acceleration = seen_from(acceleration, angle);
+        Some(BodyLoad {
+            acceleration,
+            ..BodyLoad::default()
+        })
+    }
+
+    /// Motion of the seat of a ring by what else acts on its body, by functions, m; None: nothing does.
+    pub(crate) fn seat_motion(&self, side: Side, load: Option<BodyLoad>) -> Option<Vec<f64>> {
+        self.ring(side)?.tie.as_ref()?.moved_by(self.acting(side, load))
     }
 
     /// Whether a ring has the inertia of its turning frame.

@@ -1,5 +1,6 @@
 //! A static equilibrium: displacements, forces, energies and the checks on them.
 
+use body::BodyLoad;
 use contact::{LoadedPatch, Side};
 use ring::vectors::dot;
 
@@ -87,7 +88,9 @@ impl StaticSolution {
         let finite = parts.finite_motions(&parts.unknowns(&u));
         // Loads on the rings, through their elastic motion: on their bodies and, besides the normal forces, at
         // contacts.
-        let ring_load_work = body_work(&case.loads, &rings) + ring_contact_work(&rings, &case.loads.contacts);
+        let ring_load_work = body_work(&case.loads, &rings)
+            + ring_contact_work(&rings, &case.loads.contacts)
+            + load_work_of_bodies(&case, &rings)?;
         let strain_energy = 0.5 * (ring_contact_work(&rings, &forces) + ring_load_work);
         let hertz_energy = states.iter().map(|state| state.force.energy).sum();
         let contact_work: f64 = parts.contacts.sites.iter().zip(&states).map(contact_work).sum();
@@ -130,6 +133,11 @@ impl StaticSolution {
             elastic: rings.elastic,
             footprints: rings.footprints,
         })
+    }
+
+    /// Load on all of the body of a ring, in the frame of the ring; None where it takes none.
+    pub fn body_load(&self, model: &Model, side: Side) -> Option<BodyLoad> {
+        model.body_load(side, &self.pose.now, self.pose.frame_angle(side))
     }
 
     /// Places of the contacts on one side, by ball; empty for a rigid ring.
@@ -251,6 +259,25 @@ fn body_work(loads: &Loads, rings: &RingFields) -> f64 {
     pairs
         .filter_map(|(load, field)| Some(dot(load.as_ref()?, field.as_ref()?)))
         .sum()
+}
+
+/// Loads on all of the bodies in which the rings sit times their displacements, J, as far as the rings' own seats have
+/// a part in it ([`body::SeatTie::load_work`]).
+fn load_work_of_bodies(case: &LoadCase, rings: &RingFields) -> Result<f64, DynamicsError> {
+    let mut work = 0.0;
+    for side in Side::BOTH {
+        let (ring, load) = (case.model.ring(side), case.loads.bodies[side.index()]);
+        let tied = ring.and_then(|ring| Some((ring, ring.tie.as_ref()?)));
+        let (Some((ring, tie)), Some(field), true) = (tied, &rings.elastic[side.index()], load.is_some())
+        else {
+            continue;
+        };
+        if let Some(functions) = ring.seat_functions(side.name())? {
+            let traction = tie.traction(&functions, field, case.model.acting(side, load));
+            work += traction.map_or(0.0, |traction| tie.load_work(&traction, load));
+        }
+    }
+    Ok(work)
 }
 
 /// What finite motions add to the virtual work through the displacements, J: of the normal forces, and of what contacts

@@ -338,7 +338,7 @@ impl StaticSolver {
             for (ball, foot) in feet[side.index()].iter().enumerate() {
                 foot.weights.add_load(forces[2 * ball + side.index()], &mut load);
             }
-            let seat = model.seat_motion(side);
+            let seat = model.seat_motion(side, loads.bodies[side.index()]);
             Some(ring.solver.solve_on(load, 1, seat.as_deref()))
         };
         let fields = model.backend.on_sides(field);

@@ -2,7 +2,7 @@
 
 use body::Surrounding;
 use contact::Side;
-use dynamics::motion::{BodyState, MotionState};
+use dynamics::motion::{BodyState, Motion, MotionState};
 use dynamics::{Model, StaticSolution};
 use fem::Material;
 use mesh::Mesh;
@@ -75,7 +75,7 @@ pub fn body_fields(shown: &Shown<'_>) -> Result<Vec<BodyField>, Failure> {
     for body in bodies_of(shown.model()) {
         let found = match shown {
             Shown::Equilibrium { model, solution, .. } => body_at_rest(shown, (model, solution), body.side)?,
-            Shown::Motion { model, state, .. } => moved_body(model, state, body.side),
+            Shown::Motion { motion, state, .. } => moved_body(motion, state, body.side),
         };
         // Of a body whose state was not kept there is nothing to show.
         let displacement = found.unwrap_or_else(|| vec![0.0; body.mesh.n_dofs()]);
@@ -104,8 +104,8 @@ fn body_at_rest(
 }
 
 /// The same of a motion, from the oscillators of its state.
-fn moved_body(model: &Model, state: &MotionState, side: Side) -> Option<Vec<f64>> {
-    let (_, tie) = tied(model, side)?;
+fn moved_body(motion: &Motion<'_>, state: &MotionState, side: Side) -> Option<Vec<f64>> {
+    let (_, tie) = tied(motion.model(), side)?;
     let BodyState([at, ..]) = state.rings[side.index()].as_ref()?.body()?;
-    Some(tie.body.as_ref()?.moved(&tie.modes.as_ref()?.of_body, at))
+    tie.moved(at, motion.body_load(state, side))
 }

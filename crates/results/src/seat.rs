@@ -10,7 +10,7 @@ use std::fmt::Write;
 use std::path::Path;
 use std::sync::Arc;
 
-use body::{SeatBasis, SeatFunctions, SeatTie, SeatTraction};
+use body::{BesideRing, BodyLoad, SeatBasis, SeatFunctions, SeatTie, SeatTraction};
 use comm::{Communicator, print};
 use contact::Side;
 use dynamics::motion::{Motion, MotionState};
@@ -39,6 +39,8 @@ pub struct SeatState {
     pub traction: SeatTraction,
     /// Forces on the other seats of the body, N, over the functions of all.
     others: Option<Arc<Vec<f64>>>,
+    /// Load on all of the body.
+    load: Option<BodyLoad>,
     /// Strain energy that the joint puts into the body, J: all of it where it is the only one.
     energy: f64,
 }
@@ -111,13 +113,15 @@ impl SeatState {
             return Ok(None);
         };
         let others = model.other_seats[side.index()].clone();
-        let traction = tie.traction(&functions, field, others.as_ref().map(|o| o.as_slice()));
+        let load = solution.body_load(model, side);
+        let traction = tie.traction(&functions, field, model.acting(side, load));
         Ok(traction.map(|traction| SeatState {
             side,
             tie: tie.clone(),
             functions,
             others,
-            energy: traction.energy(),
+            load,
+            energy: tie.energy(&traction, load),
             traction,
         }))
     }
@@ -132,10 +136,11 @@ impl SeatState {
         let (Some(functions), Some(body), Some(moved)) = (functions, motion.tied(side), body) else {
             return Ok(None);
         };
-        let traction = body.traction(moved);
+        let load = motion.body_load(state, side);
+        let traction = body.traction(moved, load);
         let [_, strain] = body.energies(Some(moved));
         let energy = match (&traction, tie.has_others()) {
-            (Some(traction), true) => traction.energy(),
+            (Some(traction), true) => tie.energy(traction, load),
             _ => strain,
         };
         Ok(traction.map(|traction| SeatState {
@@ -143,6 +148,7 @@ impl SeatState {
             tie: tie.clone(),
             functions,
             others: None,
+            load,
             traction,
             energy,
         }))
@@ -150,10 +156,12 @@ impl SeatState {
 
     /// Displacement of the body at rest, m, `[n_nodes][3]` flat, of one on the shaft beside that of the shaft.
     pub fn body_displacement(&self) -> Vec<f64> {
-        let others = self.others.as_ref().map(|o| o.as_slice());
-        let body = self.tie.body.as_ref();
-        let body = body.expect("a joint that carries something has a body");
-        body.displacement(&self.tie.forces_on_body(&self.traction, others))
+        let acting = BesideRing {
+            others: self.others.as_ref().map(|others| others.as_slice()),
+            load: self.load,
+        };
+        let found = self.tie.displacement(&self.traction, acting);
+        found.expect("a joint that carries something has a body")
     }
 
     /// Writes the table, says how converged the joint is, and makes the entry of the summary. Rank 0 writes for all.

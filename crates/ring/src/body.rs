@@ -10,6 +10,8 @@
 
 use std::sync::Arc;
 
+use body::BesideRing;
+
 use crate::coordinates::{Coordinates, RIGID_MOTIONS};
 use crate::division::NodePlaces;
 use crate::error::RingError;
@@ -293,11 +295,11 @@ impl dyn ElasticBody + '_ {
     }
 
     /// State of a ring: elastic nodal displacements `[n_dofs]` plus the rigid motion `q`, with the velocity of
-    /// another rigid motion `rate`, both in its own frame. Forces `others`, N, act on the other seats of its body. A
+    /// another rigid motion `rate`, both in its own frame. What is `acting` acts on its body besides the ring. A
     /// body on the shaft stands in space with its ring while the frame turns with `speed`, rad/s.
     pub fn rigid_state(
         &self,
-        (elastic, others): (&[f64], Option<&[f64]>),
+        (elastic, acting): (&[f64], BesideRing<'_>),
         [q, rate]: [[f64; 5]; 2],
         speed: f64,
     ) -> RingState {
@@ -325,8 +327,8 @@ impl dyn ElasticBody + '_ {
             .for_each(|(i, &dof)| w[i] += elastic[dof]);
         let mut v = field(rate);
         let body = self.tied().map(|body| match body.on_shaft() {
-            Some(_) => body.at_rest(elastic, others, ([q, rate], speed)),
-            None => body.at_rest(&coordinates.expand(&w), others, ([[0.0; 5]; 2], 0.0)),
+            Some(_) => body.at_rest(elastic, acting, ([q, rate], speed)),
+            None => body.at_rest(&coordinates.expand(&w), acting, ([[0.0; 5]; 2], 0.0)),
         });
         if self.tied().is_some_and(|body| body.on_shaft().is_some()) {
             let turned = |dof: usize| match dof % 3 {

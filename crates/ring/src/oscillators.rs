@@ -2,7 +2,9 @@
 
 use std::sync::Arc;
 
-use body::{N_SHAFT, SeatFunctions, SeatModes, SeatTie, SeatTraction, ShaftAtSeat, shaft_motion};
+use body::{
+    BesideRing, BodyLoad, N_SHAFT, SeatFunctions, SeatModes, SeatTie, SeatTraction, ShaftAtSeat, shaft_motion,
+};
 use dense::DenseCholesky;
 
 use crate::error::RingError;
@@ -149,6 +151,11 @@ impl Oscillators {
         self.functions.n()
     }
 
+    /// Loads on the oscillators of a load on all of the body; empty: none.
+    pub(crate) fn on_oscillators(&self, load: Option<BodyLoad>) -> Vec<f64> {
+        self.tie.on_oscillators(load)
+    }
+
     /// Whether the body carries other rings.
     pub(crate) fn has_others(&self) -> bool {
         self.tie.has_others()
@@ -173,19 +180,21 @@ impl Oscillators {
     }
 
     /// The body at rest under a ring that stands as displaced beside the motion of its shaft, m, `[n_nodes][3]` flat,
-    /// and forces on its other seats, N, over the functions of all seats. A shaft that carries it moves it, has a
+    /// and what acts on it besides. A shaft that carries it moves it, has a
     /// velocity, and turns with a `speed`, rad/s, against which the body stands.
     pub fn at_rest(
         &self,
         elastic: &[f64],
-        others: Option<&[f64]>,
+        acting: BesideRing<'_>,
         (shaft, speed): ([[f64; 5]; 2], f64),
     ) -> BodyState {
-        let Some(traction) = self.tie.traction(&self.functions, elastic, others) else {
+        let Some(traction) = self.tie.traction(&self.functions, elastic, acting) else {
             return BodyState::default();
         };
-        let forces = self.tie.forces_on_body(&traction, others);
+        let forces = self.tie.forces_on_body(&traction, acting.others);
         let mut at = self.modes.of_body.at_rest(&forces);
+        let by_load = self.tie.at_rest_under(acting.load);
+        at.iter_mut().zip(by_load).for_each(|(x, load)| *x += load);
         let zero = vec![0.0; at.len()];
         let mut velocity = match &self.modes.of_body.frame {
             Some(frame) => frame.standing(self.way() * speed, &at),
@@ -208,13 +217,19 @@ impl Oscillators {
         self.modes.on_shaft.as_ref()
     }
 
-    /// What the joint carries; None for a rigid body.
+    /// What the joint carries under a load on all of the body; None for a rigid body.
     ///
-    /// Over all seats V lam = -(xi'' + C xi' + omega^2 xi), weighted as at rest:
-    /// lam = -F^-1 V^T (xi + (xi'' + C xi')/omega^2).
-    pub fn traction(&self, BodyState([x, v, a]): &BodyState) -> Option<SeatTraction> {
+    /// Over all seats V lam = -(xi'' + C xi' + omega^2 xi - p), weighted as at rest:
+    /// lam = -F^-1 V^T (xi + (xi'' + C xi' - p)/omega^2).
+    pub fn traction(&self, BodyState([x, v, a]): &BodyState, load: Option<BodyLoad>) -> Option<SeatTraction> {
+        // What the load makes is no acceleration.
+        let load = self.tie.on_oscillators(load);
+        let a: Vec<f64> = match load.is_empty() {
+            true => a.clone(),
+            false => a.iter().zip(&load).map(|(a, p)| a - p).collect(),
+        };
         if let Some(shares) = self.on_shaft() {
-            return Some(self.traction_on_shaft(shares, [x, v, a]));
+            return Some(self.traction_on_shaft(shares, [x, v, &a]));
         }
         let [am, ak] = self.damping;
         let driven = |(i, square): (usize, &f64)| -x[i] - (a[i] + (am + ak * square) * v[i]) / square;

@@ -2,6 +2,8 @@
 
 pub use crate::inertia::{RigidInertia, across};
 
+use body::BesideRing;
+
 use crate::body::ElasticBody;
 use crate::coordinates::RIGID_MOTIONS;
 use crate::matrices::Matrix;
@@ -16,7 +18,7 @@ impl dyn ElasticBody + '_ {
             .map(|k| {
                 let mut q = [0.0; 5];
                 q[k] = 1.0;
-                let tilted = self.rigid_state((&still, None), [q, [0.0; 5]], 0.0);
+                let tilted = self.rigid_state((&still, BesideRing::default()), [q, [0.0; 5]], 0.0);
                 let w = tilted.displacement();
                 self.form(Matrix::Stress, w, w)
             })

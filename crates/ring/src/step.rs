@@ -18,7 +18,7 @@
 
 use std::sync::Arc;
 
-use body::SeatModes;
+use body::{BodyLoad, SeatModes};
 use contact::NodalWeights;
 use timer::Laps;
 
@@ -43,6 +43,8 @@ pub struct KnownLoad {
     pub turn: Option<FrameTurn>,
     /// Turning of the body on the shaft in which it sits.
     pub body_turn: Option<FrameTurn>,
+    /// Load on all of the body in which it sits.
+    pub body_load: Option<BodyLoad>,
 }
 
 /// A [`KnownLoad`] and what was found of it ahead of the step: half a solve, a first guess of the inertia of the

@@ -48,8 +48,7 @@ pub fn seat_tie(scene: &Scene, side: Side, ring: &RingModel) -> Result<Option<Ar
         return Ok(None);
     };
     let seats = [body_seat(body, ring)?];
-    let made = surrounding(&[body], &seats)?;
-    let body_of_ring = Arc::new(carried(made, body, &[ring])?);
+    let body_of_ring = Arc::new(surrounding(&[body], &seats, &[ring])?);
     Ok(ties(body, body_of_ring)?.pop())
 }
 
@@ -94,7 +93,7 @@ fn tie_side(
             }
         }
         let sitting: Vec<&RingModel> = own.iter().filter_map(|&i| rings[i][at].as_deref()).collect();
-        let made = Arc::new(carried(surrounding(&of_seats, &seats)?, body, &sitting)?);
+        let made = Arc::new(surrounding(&of_seats, &seats, &sitting)?);
         let places: Vec<f64> = own
             .iter()
             .zip(&seats)
@@ -197,9 +196,18 @@ fn seat_name(body: &SceneBody) -> String {
     }
 }
 
-/// A body of the scenes `of_seats`, which are the same but for their seats.
-fn surrounding(of_seats: &[&SceneBody], seats: &[BodySeat]) -> Result<Surrounding, BuildError> {
+/// A body of the scenes `of_seats`, which are the same but for their seats, with the shaft that carries it under the
+/// `rings` in its seats, or one that stands.
+fn surrounding(
+    of_seats: &[&SceneBody],
+    seats: &[BodySeat],
+    rings: &[&RingModel],
+) -> Result<Surrounding, BuildError> {
     let body = of_seats[0];
+    let loaded = |made: Surrounding, matrix: Option<&MatrixBody>| match body.is_loaded {
+        true => made.with_loads(matrix),
+        false => Ok(made),
+    };
     match &body.source {
         BodySource::Mesh {
             mesh,
@@ -211,13 +219,8 @@ fn surrounding(of_seats: &[&SceneBody], seats: &[BodySeat]) -> Result<Surroundin
             let turned = |x: &mut [f64; 3]| *x = frame(body).turned_vector(*x);
             mesh.nodes.iter_mut().for_each(turned);
             let made_of = Material::new(m.young_modulus, m.poisson_ratio, m.density)?;
-            Ok(Surrounding::of_mesh(
-                &body.name,
-                (mesh, &origin),
-                made_of,
-                fixed,
-                seats,
-            )?)
+            let made = Surrounding::of_mesh(&body.name, (mesh, &origin), made_of, fixed, seats)?;
+            Ok(loaded(carried(made, body, rings)?, None)?)
         }
         BodySource::Matrix(files) => {
             let mut files = files.clone();
@@ -227,7 +230,8 @@ fn surrounding(of_seats: &[&SceneBody], seats: &[BodySeat]) -> Result<Surroundin
             if body.is_turned {
                 matrix.half_turn();
             }
-            Ok(Surrounding::of_matrix(&body.name, &matrix, seats)?)
+            let made = Surrounding::of_matrix(&body.name, &matrix, seats)?;
+            Ok(loaded(carried(made, body, rings)?, Some(&matrix))?)
         }
     }
 }

@@ -305,9 +305,9 @@ fn both_seats_move_with_their_rings() {
                 .seat_functions("outer")
                 .unwrap()
                 .unwrap();
-            let others = model.other_seats[1].as_ref().map(|o| o.as_slice());
+            let acting = model.acting(Side::Outer, None);
             let field = solution.bearings[i].elastic[1].as_ref().unwrap();
-            let traction = tie.traction(&functions, field, others).unwrap();
+            let traction = tie.traction(&functions, field, acting).unwrap();
             let own = forces[tie.own()].iter_mut();
             own.zip(&traction.forces).for_each(|(p, f)| *p = -f);
             motions.push(traction.motion);

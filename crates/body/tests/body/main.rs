@@ -1,5 +1,6 @@
 //! Bodies by themselves: closed forms of a tube, bodies from matrices, and every message.
 
+mod loads;
 mod matrices;
 mod reference;
 mod vibration;

@@ -1,10 +1,14 @@
-//! Weight of the balls, of flexible rings and of the shaft's own mass.
+//! Weight of the balls, of flexible rings, of elastic bodies round them and of the shaft's own mass.
 //!
 //! Balls have it in their meridian planes; the cage carries the rest. The shaft's acts at the load point.
 //!
 //! The weight of a ring is its nodal masses, the integrals of rho N_a over the ring, times the acceleration. The masses
 //! are integrated once per ring, 8 bytes per node; a motion has their load of unit accelerations along x, y and z in
 //! the ring's coordinates ([`crate::motion`]), 24 bytes per dof, so that an instant turns three numbers.
+//!
+//! An elastic body in which a ring sits sags under its mass matrix times the acceleration
+//! ([`Model::body_load`](crate::Model::body_load), [`body::UnitLoads`]). The weight of one on the shaft as a whole acts
+//! on the shaft.
 //!
 //! Rule of thumb: weight of shaft, inner ring and balls over the load.
 
@@ -176,7 +180,7 @@ impl Effect for Gravity {
         }
         loads.add_shaft_force_at(model.load_point, g.map(|a| model.shaft_mass * a));
         if let Some(inertia) = model.carried_inertia().filter(|_| model.weighs_carried) {
-            // As a rigid body: what it sags by itself is left out.
+            // As a whole: what it sags by itself is `Model::body_load`.
             let centre = inertia.first_moment / inertia.mass;
             loads.add_shaft_force_at(centre, g.map(|a| inertia.mass * a));
         }

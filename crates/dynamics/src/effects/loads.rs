@@ -1,5 +1,6 @@
 //! Loads on the bodies at one instant, and what is known of the bearing at it.
 
+use body::BodyLoad;
 use contact::{BearingGeometry, Side};
 use input::Schedule;
 pub use ring::FrameTurn;
@@ -35,6 +36,8 @@ pub struct Loads {
     pub contacts: Vec<[f64; 2]>,
     /// Turning of the rings' frames, inner first, where their inertia is called for.
     pub frames: [Option<FrameTurn>; 2],
+    /// Loads of an equilibrium on all of the bodies in which the rings sit, inner first, in the frames of the rings.
+    pub bodies: [Option<BodyLoad>; 2],
 }
 
 /// Weight of the nodes of a flexible ring: their masses times one acceleration.
@@ -49,10 +52,14 @@ pub struct RingWeight {
 impl RingWeight {
     /// The acceleration seen from a frame that is turned by an angle, rad, m/s2.
     pub fn seen_from(&self, angle: f64) -> [f64; 3] {
-        let (sin, cos) = angle.sin_cos();
-        let [x, y, z] = self.acceleration;
-        [cos * x + sin * y, cos * y - sin * x, z]
+        seen_from(self.acceleration, angle)
     }
+}
+
+/// A vector in space seen from a frame that is turned about z by an angle, rad.
+pub(crate) fn seen_from([x, y, z]: [f64; 3], angle: f64) -> [f64; 3] {
+    let (sin, cos) = angle.sin_cos();
+    [cos * x + sin * y, cos * y - sin * x, z]
 }
 
 impl Loads {
@@ -71,6 +78,7 @@ impl Loads {
             weights: [None, None],
             contacts: Vec::new(),
             frames: [None, None],
+            bodies: [None, None],
         }
     }
 

@@ -32,7 +32,7 @@ pub use frame_rotation::{FrameRotation, static_inertia};
 pub use gravity::Gravity;
 pub use gyroscopic_moment::{GyroscopicMoment, MomentShares};
 pub use loads::{AtEquilibrium, FrameTurn, Loads, Now, RingWeight};
-pub(crate) use loads::{resultant, sum_of};
+pub(crate) use loads::{resultant, seen_from, sum_of};
 
 pub use crate::model::Effect;
 pub use moment::Moment;

@@ -108,6 +108,7 @@ impl Motion<'_> {
             load,
             turn: self.elastic_turn(side, loads),
             body_turn: self.body_turn(side, self.weighted_time(expected.span)),
+            body_load: self.model.body_load(side, &self.now(expected.span), angle),
         }
     }
 }

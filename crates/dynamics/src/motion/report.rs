@@ -1,5 +1,6 @@
 //! What is reported of a state: shaft, balls, ring displacements.
 
+use body::BodyLoad;
 use contact::patch_shape::PatchShape;
 use contact::{LoadedPatch, Side};
 
@@ -10,6 +11,7 @@ use super::state::MotionState;
 use crate::balls::{
     BallDisplacement, BallResult, CageResult, ContactResult, FreeBallResult, Friction, TractionResult,
 };
+use crate::effects::Now;
 use crate::error::DynamicsError;
 use crate::footprint::on_groove;
 use crate::interactions::traction::largest_pv;
@@ -176,6 +178,17 @@ impl Motion<'_> {
     /// Angle by which the frame of a ring is turned in space, rad.
     pub fn angle_of_frame(&self, state: &MotionState, side: Side) -> f64 {
         self.frame_angle(side, self.time(state.step))
+    }
+
+    /// Load on all of the body of a ring at the time of a state, in the frame of the ring; None where it takes none.
+    pub fn body_load(&self, state: &MotionState, side: Side) -> Option<BodyLoad> {
+        let time = self.time(state.step);
+        let now = Now {
+            time,
+            cage_angle: self.cage_angle(time),
+            ..Now::default()
+        };
+        self.model.body_load(side, &now, self.frame_angle(side, time))
     }
 
     /// Total nodal displacement of a flexible ring in its own frame, m, `[n_nodes][3]` flat, and the angle by which

@@ -1,7 +1,7 @@
 //! The start of a motion: static equilibrium, at rest but for the turning of the rings.
 
+use body::BesideRing;
 use contact::Side;
-
 use ring::{ElasticBody, Integrator, RingState};
 
 use super::cache::StepCache;
@@ -28,10 +28,10 @@ impl Motion<'_> {
             let elastic = solution.elastic[side.index()].as_ref()?;
             let (q, velocity) = side.choose((q, velocity), (seat, [0.0; 5]));
             let omega = self.settings.speeds.of(side).at(0.0);
-            let others = model.other_seats[side.index()].as_ref().map(|o| o.as_slice());
+            let load = solution.body_load(model, side);
             Some(ring_at_start(
                 &**moving.body,
-                (elastic, others),
+                (elastic, model.acting(side, load)),
                 q,
                 velocity,
                 omega,
@@ -79,7 +79,13 @@ impl Motion<'_> {
             let body = &*self.rings[side.index()].as_ref()?.body;
             let none = vec![0.0; body.held().coordinates.expanded()];
             let (q, v) = side.choose((q, velocity), ([0.0; 5], [0.0; 5]));
-            Some(ring_at_start(&**body, (&none, None), q, v, omega))
+            Some(ring_at_start(
+                &**body,
+                (&none, BesideRing::default()),
+                q,
+                v,
+                omega,
+            ))
         };
         let unloaded = PatchPlace {
             angle: self.model.geometry.free_contact_angle(),
@@ -188,15 +194,15 @@ impl Motion<'_> {
 }
 
 /// State of a ring: elastic part plus the rigid motion `q`, and in its frame, which turns at `omega`, the velocity of
-/// that motion, which has `velocity` in space. Forces `others`, N, act on the other seats of its body.
+/// that motion, which has `velocity` in space. What is `acting` acts on its body besides.
 fn ring_at_start(
     body: &dyn ElasticBody,
-    (elastic, others): (&[f64], Option<&[f64]>),
+    (elastic, acting): (&[f64], BesideRing<'_>),
     q: [f64; 5],
     velocity: [f64; 5],
     omega: f64,
 ) -> RingState {
     let turned = [omega * q[1], -omega * q[0], 0.0, omega * q[4], -omega * q[3]];
     let rate = [0, 1, 2, 3, 4].map(|i| velocity[i] + turned[i]);
-    body.rigid_state((elastic, others), [q, rate], omega)
+    body.rigid_state((elastic, acting), [q, rate], omega)
 }

@@ -1,5 +1,6 @@
 //! A ring tied to an elastic body: against the holds of rigid partners, and against ring and body meshed as one.
 
+mod loads;
 mod modes;
 mod motion;
 mod shaft;
@@ -11,7 +12,7 @@ mod support;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use body::{BodySeat, SeatBasis, SeatCylinder, SeatSpace, SeatTie, Surrounding};
+use body::{BesideRing, BodySeat, SeatBasis, SeatCylinder, SeatSpace, SeatTie, Surrounding};
 use contact::Side;
 use dynamics::motion::{Motion, MotionState, StepCache};
 use dynamics::{Backend, ContactMode, Hold, Model, RingModel, StaticSolution};
@@ -311,7 +312,7 @@ fn the_joint_carries_the_loads_and_the_body_follows() {
     let u = solver(&ring).solve(load.clone(), 1);
     let tie = ring.tie.clone().unwrap();
     let functions = ring.seat_functions("outer").unwrap().unwrap();
-    let traction = tie.traction(&functions, &u, None).unwrap();
+    let traction = tie.traction(&functions, &u, BesideRing::default()).unwrap();
     let mut sum = load.clone();
     functions.add_load(&traction.forces, &mut sum);
     for c in 0..3 {

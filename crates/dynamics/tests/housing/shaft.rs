@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use body::SeatTie;
+use body::{BesideRing, SeatTie};
 use contact::Side;
 use dynamics::kinematics::Speed;
 use dynamics::modes::bearing_modes;
@@ -19,16 +19,16 @@ const STEP: f64 = 1e-5;
 /// Speed of the shaft, rad/s: 9500 rpm.
 const SPEED: f64 = 1000.0;
 
-fn inner(hold: Hold) -> RingModel {
+pub fn inner(hold: Hold) -> RingModel {
     ring(Side::Inner, LEVEL, hold)
 }
 
 /// A tube in the bore whose inside is carried by the shaft: alone, and with the ring.
-fn hollow_shaft(layers: usize) -> (mesh::Mesh, mesh::Mesh) {
+pub fn hollow_shaft(layers: usize) -> (mesh::Mesh, mesh::Mesh) {
     wrapped(&inner(Hold::Clamped), layers, 0.6, |_| true)
 }
 
-fn on_shaft(mesh: mesh::Mesh, functions: [usize; 2], below: Option<f64>) -> RingModel {
+pub fn on_shaft(mesh: mesh::Mesh, functions: [usize; 2], below: Option<f64>) -> RingModel {
     made_of(steel(), mesh, functions, below)
 }
 
@@ -48,7 +48,7 @@ fn made_of(material: Material, mesh: mesh::Mesh, [n, across]: [usize; 2], below:
 }
 
 /// Ring and shaft as one mesh.
-fn as_one(layers: usize) -> RingModel {
+pub fn as_one(layers: usize) -> RingModel {
     RingModel {
         mesh: hollow_shaft(layers).1,
         held_group: "feet",
@@ -56,7 +56,7 @@ fn as_one(layers: usize) -> RingModel {
     }
 }
 
-fn bearing(inner: RingModel, backend: Backend) -> Model {
+pub fn bearing(inner: RingModel, backend: Backend) -> Model {
     let case = Case {
         radial: 3000.0,
         ..Case::axial(1000.0)
@@ -67,7 +67,7 @@ fn bearing(inner: RingModel, backend: Backend) -> Model {
 }
 
 /// A bearing whose shaft is free, with a light hub of its own, and may tilt.
-fn free(inner: RingModel, backend: Backend) -> Model {
+pub fn free(inner: RingModel, backend: Backend) -> Model {
     let mut model = bearing(inner, backend);
     model.shaft_mass = 0.1;
     model.shaft_inertia.transverse = 5e-5;
@@ -272,11 +272,15 @@ fn an_equilibrium_stays() {
         .unwrap()
         .unwrap();
     let expected = tie
-        .traction(&functions, rest.elastic[0].as_ref().unwrap(), None)
+        .traction(
+            &functions,
+            rest.elastic[0].as_ref().unwrap(),
+            BesideRing::default(),
+        )
         .unwrap();
     let moving = motion.tied(Side::Inner).unwrap();
     let found = moving
-        .traction(state.rings[0].as_ref().unwrap().body().unwrap())
+        .traction(state.rings[0].as_ref().unwrap().body().unwrap(), None)
         .unwrap();
     assert!(difference(&found.forces, &expected.forces) < 1e-5);
     assert!(difference(&found.motion, &expected.motion) < 1e-6);

@@ -1,6 +1,7 @@
 //! Small loads on a ring that its shaft has moved far: the play of the bearing is a thousand times its elastic
 //! deflection.
 
+use body::BesideRing;
 use contact::Side;
 use dynamics::kinematics::Speed;
 use dynamics::motion::{Motion, MotionSettings, StepCache};
@@ -75,8 +76,9 @@ fn a_rigid_motion_does_not_change_the_strain_energy() {
         };
         let body = elastic_body("inner", ring, settings).unwrap();
         let u = small_field(ring, &body.held().coordinates.held_nodes());
-        let energy =
-            |u: &[f64], q: [f64; 5]| body.energies(&body.rigid_state((u, None), [q, [0.0; 5]], 0.0))[1];
+        let energy = |u: &[f64], q: [f64; 5]| {
+            body.energies(&body.rigid_state((u, BesideRing::default()), [q, [0.0; 5]], 0.0))[1]
+        };
         let (undeformed, far) = (vec![0.0; u.len()], [1e-3, -1e-3, 1e-3, 1e-3, -1e-3]);
         let expected = energy(&u, [0.0; 5]);
         let found = energy(&u, far) - energy(&undeformed, far);

@@ -8,6 +8,7 @@ use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
+use body::BesideRing;
 use contact::{Groove, Side};
 use dynamics::{Hold, RingModel, Sectors};
 use mesh::{ElementKind, Section, revolve};
@@ -168,7 +169,7 @@ fn frequencies(ring: &RingModel, frame: Frame, n: f64, speed: f64, dt: f64) -> [
     let [cosine, sine] = [0.0, TAU / 4.0].map(|phase| bending(ring, n, phase));
     let weights = [&cosine, &sine].map(|shape| ring::sparse::node_product(&mass, shape));
     let start: Vec<f64> = cosine.iter().map(|u| 1e-6 * u).collect();
-    let mut state = body.rigid_state((&start, None), [[0.0; 5]; 2], 0.0);
+    let mut state = body.rigid_state((&start, BesideRing::default()), [[0.0; 5]; 2], 0.0);
     let mut z = Vec::new();
     for _ in 0..240 {
         let u = body.nodal(state.displacement());
@@ -260,7 +261,11 @@ fn a_free_ring_tilts_as_a_gyroscope_by_its_stress() {
         };
         let factor = body.clone().step_factor(scheme).unwrap();
         let still = vec![0.0; ring.mesh.n_dofs()];
-        let mut state = body.rigid_state((&still, None), [[0.0; 5], [0.0, 0.0, 0.0, rate, 0.0]], 0.0);
+        let mut state = body.rigid_state(
+            (&still, BesideRing::default()),
+            [[0.0; 5], [0.0, 0.0, 0.0, rate, 0.0]],
+            0.0,
+        );
         for _ in 0..n {
             state = step(&*factor, &state, speed, None);
         }

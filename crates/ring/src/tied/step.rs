@@ -88,6 +88,8 @@ struct TiedStep<'a> {
     alone: Vec<f64>,
     /// Mean load of others on the oscillators; empty: none.
     others: Vec<f64>,
+    /// The same of a load on all of the body.
+    of_body: Vec<f64>,
     /// Inertia of the turning frame of the body; None where it does not turn.
     frame: Option<BodyFrame>,
     answer: PortAnswer,
@@ -132,6 +134,7 @@ impl StepFactor for TiedFactor {
             .body()
             .expect("the state of a tied ring has that of its body");
         let frame = self.body.frame(known.load.body_turn, old);
+        let of_body = self.body.body.on_oscillators(known.load.body_load);
         let mut step = TiedStep {
             factor: self,
             ring: self.ring.begin(from, known, contacts),
@@ -139,7 +142,8 @@ impl StepFactor for TiedFactor {
             alone: Vec::new(),
             others: Vec::new(),
             frame,
-            body: self.body.step(old, &[]),
+            body: self.body.step(old, &of_body),
+            of_body,
             own_seat: Vec::new(),
             old,
             answer: PortAnswer::default(),
@@ -218,11 +222,11 @@ impl TiedStep<'_> {
     fn step_body(&mut self) {
         let factor = &self.factor.body;
         let Some(frame) = &self.frame else {
-            self.body = factor.step(self.old, &self.others);
+            self.body = factor.step(self.old, &summed(&self.of_body, &self.others));
             self.alone.clone_from(&self.body.shaft[1]);
             return;
         };
-        let mut sum = frame.load.clone();
+        let mut sum = summed(&frame.load, &self.of_body);
         let shaft_at_end = |load: &[f64]| factor.step(self.old, load).shaft[1].clone();
         let unloaded = shaft_at_end(&sum);
         sum.iter_mut().zip(&self.others).for_each(|(sum, p)| *sum += p);
@@ -353,6 +357,11 @@ impl ElasticStep for TiedStep<'_> {
             End::Done(mut ended) => {
                 let factor = &self.factor.body;
                 let moved = factor.advanced(self.old, &self.body, &lam, forces.mount);
+                if !self.of_body.is_empty() {
+                    let change = moved.0[0].iter().zip(&self.old.0[0]);
+                    let work = change.zip(&self.of_body).map(|((b, a), p)| p * (b - a));
+                    ended.works.load += work.sum::<f64>();
+                }
                 if let Some(frame) = &self.frame {
                     let change = moved.0[0].iter().zip(&self.old.0[0]);
                     let loads = frame.load.iter().zip(&frame.of_ring);
@@ -370,6 +379,15 @@ impl ElasticStep for TiedStep<'_> {
                 End::Again
             }
         }
+    }
+}
+
+/// The sum of two loads on oscillators, each of which may be empty: none.
+fn summed(a: &[f64], b: &[f64]) -> Vec<f64> {
+    match (a, b) {
+        (a, []) => a.to_vec(),
+        ([], b) => b.to_vec(),
+        (a, b) => a.iter().zip(b).map(|(a, b)| a + b).collect(),
     }
 }
 

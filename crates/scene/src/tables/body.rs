@@ -100,8 +100,10 @@ pub struct SceneBody {
     pub is_shared: bool,
     /// Frequency up to which its modes with a held seat move, Hz; None at rest.
     pub modes_below: Option<f64>,
-    /// Whether the mass among its matrices is read: at rest only modes over the speed ask for it.
+    /// Whether the mass among its matrices is read: at rest only modes over the speed and loads on all of it do.
     pub reads_mass: bool,
+    /// Whether an effect of the scene loads all of it.
+    pub is_loaded: bool,
     /// Where the middle of the ring's seat stands along its own z, m; None: in the middle of the group.
     pub z: Option<f64>,
 }
@@ -248,7 +250,7 @@ impl RawSceneBody {
             format!("{:?}", self.name),
             "expected a name of 1 to 64 letters",
         );
-        let source = self.check_source(&key, ring, context, (problems, assumed));
+        let source = self.check_source(&key, ring, context, (problems, &mut *assumed));
         let typed = self.orientation.as_deref().unwrap_or(Orientation::PlusZ.name());
         let orientation = Orientation::named(typed);
         problems.require(
@@ -257,6 +259,13 @@ impl RawSceneBody {
             format!("{typed:?}"),
             "expected \"+z\", as the mesh stands, or \"-z\", turned by 180 deg about x",
         );
+        let is_loaded = context.effects.contains(&"gravity");
+        if is_loaded && self.stiffness.is_some() && self.mass.is_none() {
+            assumed.push(format!(
+                "{key} comes from matrices without a mass, so effects.gravity does not make it sag; add mass and \
+                 mass_unit for that"
+            ));
+        }
         let modes_below = self.check_modes(&key, context, problems);
         let seat = self.check_seat(&key, problems)?;
         let harmonics = seat.harmonics.unwrap_or(HARMONICS);
@@ -275,7 +284,8 @@ impl RawSceneBody {
             is_turned: orientation == Some(Orientation::MinusZ),
             is_shared: false,
             modes_below,
-            reads_mass: context.moves,
+            reads_mass: context.moves || is_loaded,
+            is_loaded,
             source: source?,
             group: seat.group.clone().unwrap_or_default(),
             z: seat.z.as_ref().map(Quantity::si),

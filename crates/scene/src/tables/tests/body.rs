@@ -320,6 +320,20 @@ fn only_a_body_with_a_mass_moves() {
     let with_mass = matrices("mass = \"M.mtx\"\nmass_unit = \"t\"");
     let reads = [&with_mass, &moving(&with_mass)].map(|text| body_of(text).reads_mass);
     assert_eq!(reads, [false, true]);
+    // At rest gravity asks for the mass, and says where there is none.
+    let heavy = |text: &str| {
+        let gravity =
+            "[effects.gravity]\nacceleration = \"9.81 m/s2\"\ndirection = [0.0, -1.0, 0.0]\n[static]";
+        text.replace("[static]", gravity)
+    };
+    let body = body_of(&heavy(&with_mass));
+    assert!(body.reads_mass && body.is_loaded);
+    assert!(body_of(&heavy(SCENE)).is_loaded && !body_of(SCENE).is_loaded);
+    let assumed = |text: &str| parse(text, &[]).unwrap_or_else(|e| panic!("{e}")).assumed;
+    let said = "body \"plummer block\" comes from matrices without a mass, so effects.gravity does not make it sag; \
+                add mass and mass_unit for that";
+    assert!(assumed(&heavy(&matrices(""))).iter().any(|line| line == said));
+    assert!(!assumed(&heavy(&with_mass)).iter().any(|line| line == said));
     for (text, expected) in [
         (
             moving(&below("0 Hz")),
