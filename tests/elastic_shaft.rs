@@ -60,9 +60,33 @@ fn a_spindle_of_finite_elements_carries_its_loads_and_its_weight() {
         assert!(number(&own, "/seat_inner/body_energy_j") > 0.0);
         assert!(dir.path(&format!("found/{name}/seat_inner.csv")).exists());
     }
+    let beside =
+        of_bearings(&dir, "found", "x_m")[0] - Table::read(&dir, "found/front/shaft.csv").column("x_m")[0];
+    let mean = mean_of_seat_along_x(&dir);
+    assert!(
+        mean.abs() > 1e-8 && (beside / mean - 1.0).abs() < 0.02,
+        "{beside:e} {mean:e}"
+    );
+    let line = Table::read(&dir, "found/shaft.csv");
+    assert_eq!(line.column("x_m")[0], of_bearings(&dir, "found", "x_m")[0]);
     let plot = dir.raceway(&["plot", "found/front"]);
     assert_eq!(plot.code, Some(0), "{}", plot.stderr);
     assert!(dir.path("found/front/figures/seat_pressure_inner.svg").exists());
+}
+
+/// Mean of the motion along x of the front seat beside the shaft, by Simpson's rule across, m.
+fn mean_of_seat_along_x(dir: &Dir) -> f64 {
+    const SIMPSON: [f64; 9] = [1.0, 4.0, 2.0, 4.0, 2.0, 4.0, 2.0, 4.0, 1.0];
+    let table = Table::read(dir, "found/front/seat_inner.csv");
+    let columns = ["azimuth_rad", "radial_m", "tangential_m"].map(|name| table.column(name));
+    let [azimuth, radial, tangential] = columns;
+    let rows = azimuth.iter().zip(radial.iter().zip(&tangential)).enumerate();
+    let (mut sum, mut weights) = (0.0, 0.0);
+    for (i, (azimuth, (radial, tangential))) in rows {
+        sum += SIMPSON[i % 9] * (radial * azimuth.cos() - tangential * azimuth.sin());
+        weights += SIMPSON[i % 9];
+    }
+    sum / weights
 }
 
 /// If this failed, a pair on one spindle would lose energy in motion, or would go on to other bits after a resume or on

@@ -189,7 +189,10 @@ fn units_that_make_no_solid_are_doubted() {
     };
     let modes = "[modes]\nnumber = 6\nbodies = [\"bearing\"]";
     let sound = doubts(modes, ["\"kg\"", "\"kg\""]);
-    assert!(!sound.contains("check stiffness_unit") && !sound.contains("check mass_unit"), "{sound}");
+    assert!(
+        !sound.contains("check stiffness_unit") && !sound.contains("check mass_unit"),
+        "{sound}"
+    );
     assert!(sound.contains(", as stiff as a solid of "), "{sound}");
     let stiff = doubts("[static]", ["\"N/m\"", "\"N/mm\""]);
     let part = "body \"housing\": between its nodes it is as stiff as a solid of ";

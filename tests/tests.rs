@@ -36,6 +36,7 @@ mod motion;
 mod moved_results;
 mod output_fields;
 mod own_files;
+mod pinched_ball;
 mod plot;
 mod prices;
 mod probes;

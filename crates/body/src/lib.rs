@@ -19,6 +19,7 @@ mod joint;
 mod loaded;
 mod loads;
 pub mod matrix;
+mod mean_motion;
 mod nodes;
 mod on_shaft;
 mod oscillators;

@@ -142,8 +142,15 @@ impl HeldSeats<'_> {
 impl HeldSeats<'_> {
     /// What is odd of the body's matrices, for the end of a message.
     fn doubt(&self) -> String {
-        let doubts = self.body.apparent.map(|apparent| apparent.doubts(&self.body.name));
-        doubts.iter().flatten().map(|doubt| format!("; {doubt}")).collect()
+        let doubts = self
+            .body
+            .apparent
+            .map(|apparent| apparent.doubts(&self.body.name));
+        doubts
+            .iter()
+            .flatten()
+            .map(|doubt| format!("; {doubt}"))
+            .collect()
     }
 }
 

@@ -77,6 +77,7 @@ fn place_patch(
     loaded: bool,
 ) -> Result<Footprint, DynamicsError> {
     let load = force[0].hypot(force[1]);
+    let is_beyond = loaded && on_groove(&raceway.surface, angle, true) != angle;
     let angle = on_groove(&raceway.surface, angle, loaded);
     let hertz = model.hertz[site.side.index()].semi_axes(load);
     let least = model.contact.least_patch;
@@ -92,7 +93,7 @@ fn place_patch(
     Ok(Footprint {
         weights: patch.weights,
         semi_axes: Some(shape.semi_axes),
-        truncated: shape.truncated,
+        truncated: shape.truncated || is_beyond,
     })
 }
 

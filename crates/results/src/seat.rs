@@ -14,6 +14,7 @@ use body::{BesideRing, BodyLoad, SeatBasis, SeatFunctions, SeatTie, SeatTraction
 use comm::{Communicator, print};
 use contact::Side;
 use dynamics::motion::{Motion, MotionState};
+use dynamics::stiffness::N_SHAFT;
 use dynamics::{Model, RingModel, StaticSolution};
 use serde::Serialize;
 
@@ -90,6 +91,35 @@ pub fn of_motion(motion: &Motion<'_>, state: &MotionState, dir: &Path) -> Result
 
 fn finished(state: Option<SeatState>, dir: &Path) -> Result<Option<SeatSummary>, Failure> {
     Ok(state.map(|state| state.finish(dir)).transpose()?)
+}
+
+/// Mean motion of the inner ring's seat beside the rigid motion of the shaft whose body it sits on, at the axis point,
+/// in the frame of the bearing, m and rad; None where the inner ring is on no such body. Seats were resolved before.
+pub fn beside_shaft_at_rest(model: &Model, solution: &StaticSolution) -> Option<[f64; N_SHAFT]> {
+    let (ring, tie) = on_shaft(model)?;
+    let functions = ring.seat_functions(Side::Inner.name()).ok().flatten()?;
+    let field = solution.elastic[Side::Inner.index()].as_ref()?;
+    Some(at_axis_point(model, tie, &functions.measure(field)))
+}
+
+/// The same in a motion.
+pub fn beside_shaft_in_motion(motion: &Motion<'_>, state: &MotionState) -> Option<[f64; N_SHAFT]> {
+    let (_, tie) = on_shaft(motion.model())?;
+    let moved = state.rings[Side::Inner.index()].as_ref()?.body()?;
+    let load = motion.body_load(state, Side::Inner);
+    let traction = motion.tied(Side::Inner)?.traction(moved, load)?;
+    Some(at_axis_point(motion.model(), tie, &traction.motion))
+}
+
+/// The inner ring on the body of a shaft.
+fn on_shaft(model: &Model) -> Option<(&RingModel, &Arc<SeatTie>)> {
+    tied(model, Side::Inner).filter(|(_, tie)| tie.carried().is_some())
+}
+
+fn at_axis_point(model: &Model, tie: &SeatTie, motion: &[f64]) -> [f64; N_SHAFT] {
+    let [_, z] = model.geometry.groove_centre(Side::Inner);
+    let [ux, uy, uz, rx, ry, _] = tie.space.mean_motion(motion, z);
+    [ux, uy, uz, rx, ry]
 }
 
 /// A place of the table.

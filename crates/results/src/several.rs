@@ -18,6 +18,7 @@ use timer::Laps;
 
 use crate::cut::TableCut;
 use crate::modes::FrequenciesSummary;
+use crate::seat::{beside_shaft_at_rest, beside_shaft_in_motion};
 use crate::summary::{peak_memory, print_peak, print_seconds, print_warnings, write_summary};
 use crate::tables::{append, ball_cells, ball_columns, create, head, number, place_of};
 use crate::tilt::AcrossShaft;
@@ -163,7 +164,7 @@ impl SeveralTables {
         }
         append(&mut tables.balls, BALLS_TABLE, balls)?;
         append(&mut tables.bearings, BEARINGS_TABLE, bearings)?;
-        let line = line(assembly, &state.shaft).into_iter();
+        let line = state.line(assembly).into_iter();
         let line = line.map(|(z, q)| row(std::iter::once(z).chain(q).map(number).collect()));
         append(&mut tables.shaft, SHAFT_TABLE, line)?;
         let Some(energy) = &mut tables.energy else {
@@ -197,6 +198,12 @@ pub(crate) fn line(assembly: &Assembly, displacements: &[f64]) -> Vec<(f64, [f64
     places.into_iter().map(at).collect()
 }
 
+/// Turns a motion out of the frame of a bearing into that of the shaft.
+fn turned(assembly: &Assembly, number: usize) -> impl Fn([f64; N_SHAFT]) -> [f64; N_SHAFT] {
+    let orientation = assembly.bearings[number].place.orientation;
+    move |motion| orientation.turned(motion)
+}
+
 /// Shaft and bearings at one instant.
 #[derive(Clone)]
 pub struct ListState {
@@ -209,6 +216,18 @@ pub struct ListState {
 }
 
 impl ListState {
+    /// The line of the shaft: places and their displacements. On an elastic body these are the seats of its bearings.
+    pub fn line(&self, assembly: &Assembly) -> Vec<(f64, [f64; N_SHAFT])> {
+        if assembly.shaft.is_beam() || !self.bearings.iter().any(|bearing| bearing.is_on_body) {
+            return line(assembly, &self.shaft);
+        }
+        let places = assembly.bearings.iter().map(|bearing| bearing.place.position);
+        let displacements = self.bearings.iter().map(|bearing| bearing.displacement);
+        let mut seats: Vec<(f64, [f64; N_SHAFT])> = places.zip(displacements).collect();
+        seats.sort_by(|a, b| a.0.total_cmp(&b.0));
+        seats
+    }
+
     /// An equilibrium.
     pub fn of_equilibrium(assembly: &Assembly, solution: &AssemblySolution) -> ListState {
         let shaft = solution.shaft.displacements.clone();
@@ -220,6 +239,9 @@ impl ListState {
                 &shaft,
                 force,
                 (balls, found.displacements.seat),
+            )
+            .beside(
+                beside_shaft_at_rest(&assembly.bearings[number].model, found).map(turned(assembly, number)),
             )
         };
         ListState {
@@ -237,7 +259,8 @@ impl ListState {
             let force = orientation.turned(state.loads[number]).map(|f| 0.0 - f);
             let seat = own.seat.map_or(0.0, |seat| seat[0]);
             let balls = motion.bearings[number].balls(own);
-            StateOnShaft::new((assembly, number), &state.shaft, force, (balls, seat))
+            let beside = beside_shaft_in_motion(&motion.bearings[number], own).map(turned(assembly, number));
+            StateOnShaft::new((assembly, number), &state.shaft, force, (balls, seat)).beside(beside)
         };
         let ledger = &state.ledger;
         ListState {
@@ -260,8 +283,10 @@ impl ListState {
 pub struct StateOnShaft {
     /// Its balls, in its own frame.
     pub balls: Vec<BallResult>,
-    /// Displacement of the shaft at its place, m and rad.
+    /// Displacement of the shaft at its place, m and rad; on an elastic body the mean motion of its seat.
     pub displacement: [f64; N_SHAFT],
+    /// The shaft is an elastic body here.
+    is_on_body: bool,
     /// Force, N, and moment, N m, by which it pushes the shaft at its place.
     pub force: [f64; N_SHAFT],
     /// Displacement of the outer ring's seat along its own z, m.
@@ -284,6 +309,7 @@ impl StateOnShaft {
         let largest = balls.iter().fold(0.0f64, |m, b| m.max(b.inner.force_n));
         StateOnShaft {
             displacement: station.displacement(shaft),
+            is_on_body: false,
             force: force.map(|f| f + 0.0),
             seat,
             largest_ball_force: largest,
@@ -293,6 +319,15 @@ impl StateOnShaft {
                 .count(),
             balls,
         }
+    }
+
+    /// The same where the seat moves so beside the rigid shaft.
+    fn beside(mut self, motion: Option<[f64; N_SHAFT]>) -> StateOnShaft {
+        for (q, more) in self.displacement.iter_mut().zip(motion.into_iter().flatten()) {
+            *q += more;
+        }
+        self.is_on_body = motion.is_some();
+        self
     }
 }
 
@@ -395,7 +430,7 @@ impl SeveralSummary {
             };
             (mounted.name.clone(), summary)
         };
-        let line = line(assembly, &last.shaft);
+        let line = last.line(assembly);
         let parts = findings
             .laps
             .iter()

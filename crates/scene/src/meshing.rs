@@ -48,7 +48,9 @@ pub fn build_meshes(
     }
     for job in &kept {
         let path = job.body.mesh.display();
-        print::note(format_args!("{path} exists already and is kept; --force replaces it"));
+        print::note(format_args!(
+            "{path} exists already and is kept; --force replaces it"
+        ));
     }
     wanted.iter().try_for_each(|job| build_file(job, overwrite, gmsh))
 }

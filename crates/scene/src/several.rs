@@ -45,13 +45,13 @@ pub fn build_assembly(scene: &SeveralScene) -> Result<(Assembly, Vec<NodeTags>),
 /// The same with rings that were read before, by bearing: the points of a sweep share them.
 pub fn assembly_with_rings(scene: &SeveralScene, rings: Vec<Rings>) -> Result<Assembly, BuildError> {
     let mut bearings = Vec::new();
-    for (bearing, rings) in scene.bearings.iter().zip(rings) {
+    for (number, (bearing, rings)) in scene.bearings.iter().zip(rings).enumerate() {
         bearings.push(MountedBearing {
             name: bearing.name.clone(),
             place: Seating {
                 position: bearing.position,
                 orientation: bearing.orientation,
-                shift: 0.5 * scene.pairing.offset,
+                shift: scene.pairing.shift(number),
             },
             model: Model {
                 weighs_carried: false,

@@ -147,7 +147,10 @@ fn a_ring_that_is_clamped_on_a_quarter_of_its_seat_has_no_regular_ring() {
     assert_eq!(ends[0], ends[1]);
     let model = with_meshes(HEX8, Hold::Clamped, Backend::Cyclic, clasped);
     let error = StaticSolver::new(&model).err().unwrap().to_string();
-    assert!(error.ends_with("what holds it reaches less than half round"), "{error}");
+    assert!(
+        error.ends_with("what holds it reaches less than half round"),
+        "{error}"
+    );
     assert_same_statics(Hold::MeanMotion, |backend| {
         with_meshes(HEX8, Hold::MeanMotion, backend, clasped)
     });

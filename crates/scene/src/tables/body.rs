@@ -224,7 +224,11 @@ fn refuse_beside_body(name: &str, ring: RingName, context: &BodyContext<'_>, pro
         if context.effects.contains(effect) {
             problems.add(format!(
                 "effects.{effect}{} does not go with body {name:?}: {why}; remove one of them",
-                if *effect == "spring_preload" { ", or pairing.spring," } else { "" }
+                if *effect == "spring_preload" {
+                    ", or pairing.spring,"
+                } else {
+                    ""
+                }
             ));
         }
     }

@@ -15,10 +15,11 @@ use super::mounted::RawMounted;
 #[derive(Debug, Deserialize)]
 #[serde(
     deny_unknown_fields,
-    expecting = "the table [pairing] with offset, or with spring and sliding"
+    expecting = "the table [pairing] with offset and bearings, or with spring and sliding"
 )]
 pub struct RawPairing {
     offset: Option<Quantity<LENGTH>>,
+    bearings: Option<Vec<String>>,
     spring: Option<Quantity<FORCE>>,
     sliding: Option<String>,
 }
@@ -28,8 +29,20 @@ pub struct RawPairing {
 pub struct Pairing {
     /// Axial distance by which "+z" bearings are pressed against "-z" bearings, m.
     pub offset: f64,
+    /// Numbers of the bearings of a list that it presses together; None: all.
+    pub members: Option<Vec<usize>>,
     /// A spring behind one outer ring.
     pub spring: Option<SpringPairing>,
+}
+
+impl Pairing {
+    /// The distance by which the faces move the inner ring of a bearing along its own z, m.
+    pub fn shift(&self, bearing: usize) -> f64 {
+        match &self.members {
+            Some(members) if !members.contains(&bearing) => 0.0,
+            _ => 0.5 * self.offset,
+        }
+    }
 }
 
 /// A constant force on the outer ring of a bearing.
@@ -56,14 +69,21 @@ impl RawPairing {
                 offset,
                 "expected -1 to 1 mm, such as \"8 um\": the distance by which the faces press the bearings together",
             );
-            let has = |wanted| bearings.iter().any(|b| b.orientation() == Some(wanted));
-            let is_known = bearings.iter().all(|b| b.orientation().is_some());
+            let is_member =
+                |b: &&RawMounted| self.bearings.as_ref().is_none_or(|names| names.contains(&b.name));
+            let members = || bearings.iter().filter(is_member);
+            let has = |wanted| members().any(|b| b.orientation() == Some(wanted));
+            let is_known = members().all(|b| b.orientation().is_some());
             if is_known && !(has(Orientation::PlusZ) && has(Orientation::MinusZ)) {
                 problems.add(format!(
                     "pairing.offset is {offset}, but all bearings have the same orientation; it presses \"+z\" against \
                      \"-z\" bearings, so turn one of them or remove it"
                 ));
             }
+        } else if self.bearings.is_some() {
+            problems.add(
+                "pairing.bearings needs offset, the distance by which these bearings press on each other",
+            );
         }
         if self.offset.is_some() && self.spring.is_some() {
             problems
@@ -76,8 +96,22 @@ impl RawPairing {
         }
         Pairing {
             offset: self.offset.as_ref().map_or(0.0, Quantity::si),
+            members: self.members(bearings, problems),
             spring: self.spring(bearings, problems),
         }
+    }
+
+    fn members(&self, bearings: &[RawMounted], problems: &mut Problems) -> Option<Vec<usize>> {
+        let wanted = self.bearings.as_ref()?;
+        let names: Vec<&str> = bearings.iter().map(|b| b.name.as_str()).collect();
+        for name in wanted.iter().filter(|name| !names.contains(&name.as_str())) {
+            problems.add(format!(
+                "pairing.bearings has {name:?}; expected names of bearings: {}",
+                names.join(", ")
+            ));
+        }
+        let is_member = |number: &usize| wanted.iter().any(|name| name == names[*number]);
+        Some((0..names.len()).filter(is_member).collect())
     }
 
     fn spring(&self, bearings: &[RawMounted], problems: &mut Problems) -> Option<SpringPairing> {
