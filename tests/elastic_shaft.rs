@@ -95,10 +95,12 @@ fn mean_of_seat_along_x(dir: &Dir) -> f64 {
 fn a_pair_moves_on_one_spindle_and_goes_on_to_the_same_bits() {
     let dir = delivered();
     in_motion(&dir, SCENE, ["spindle", "6000 rpm"]);
+    let growing = dir.text("moving.toml") + "\n[effects.frame_rotation]\n";
+    dir.write("moving.toml", growing);
     assert_moves_and_goes_on(&dir, "moving.toml", &FEW);
 }
 
-/// One bearing with a coarse ring on the front seat of a spindle.
+/// One bearing with a coarse ring on the front seat of a spindle, which sags and grows.
 fn alone(dir: &Dir, mesh: &str) {
     let text = dir
         .text("scenes/7010c_1800rpm_coarse.toml")
@@ -114,7 +116,9 @@ fn alone(dir: &Dir, mesh: &str) {
         .replace("[shaft] ", &body)
         .replace("duration = \"10 ms\"", "duration = \"240 us\"")
         .replace("output_every = 20", "output_every = 4");
-    dir.write("alone.toml", text);
+    let loads = "\n[effects.gravity]\nacceleration = \"9.81 m/s2\"\ndirection = [0.0, -1.0, 0.0]\n\
+                 [effects.frame_rotation]\n";
+    dir.write("alone.toml", text + loads);
 }
 
 /// Where the points of a body within a region of the mesh stand in step 12, beside their places turned by an angle, m.

@@ -30,6 +30,23 @@ pub struct BodyLoad {
 }
 
 impl BodyLoad {
+    /// Its acceleration alone.
+    pub fn weight(self) -> BodyLoad {
+        BodyLoad {
+            acceleration: self.acceleration,
+            ..BodyLoad::default()
+        }
+    }
+
+    /// Its turning alone; None of a frame that stands.
+    pub fn turning(self) -> Option<BodyLoad> {
+        let turns = self.speed != 0.0 || self.rate != 0.0;
+        turns.then_some(BodyLoad {
+            acceleration: [0.0; 3],
+            ..self
+        })
+    }
+
     /// Factors of the unit loads of a body whose bearing may stand turned by 180 deg about x.
     pub(crate) fn factors(&self, is_turned: bool) -> [f64; N_LOADS] {
         let way = if is_turned { -1.0 } else { 1.0 };

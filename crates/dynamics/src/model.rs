@@ -21,7 +21,7 @@ use serde::Deserialize;
 use timer::SharedLaps;
 
 use crate::balls::BallResult;
-use crate::effects::{Loads, Now, seen_from};
+use crate::effects::{FrameTurn, Loads, Now, seen_from};
 use crate::error::DynamicsError;
 use crate::interactions::cage::design::Cage;
 use crate::interactions::seat_spring::Seat;
@@ -197,6 +197,11 @@ pub trait Effect: Send + Sync {
         false
     }
 
+    /// Turning of a ring's frame whose inertia it is, at a time, s; None where there is no frame.
+    fn frame_turn(&self, _side: Side, _time: f64) -> Option<FrameTurn> {
+        None
+    }
+
     /// From where on the inertia of a ring's elastic part in its turning frame acts; None where there is no frame.
     fn inertia_limit(&self, _side: Side) -> Option<InertiaLimit> {
         None
@@ -315,16 +320,20 @@ impl Model {
     /// Load on all of the body of a ring at an instant, seen from the frame of the ring, which is turned by an angle,
     /// rad; None where the body takes none.
     pub fn body_load(&self, side: Side, now: &Now, angle: f64) -> Option<BodyLoad> {
-        self.ring(side)?.tie.as_ref()?.body.as_ref()?.loads.as_ref()?;
+        let tie = self.ring(side)?.tie.as_ref()?;
+        tie.body.as_ref()?.loads.as_ref()?;
         let mut acceleration = [0.0; 3];
         for effect in &self.effects {
             let of_effect = effect.acceleration(now);
             (0..3).for_each(|i| acceleration[i] += of_effect[i]);
         }
         let acceleration = seen_from(acceleration, angle);
+        let mut turns = self.effects.iter().filter(|_| tie.carried().is_some());
+        let turn = turns.find_map(|effect| effect.frame_turn(side, now.time));
         Some(BodyLoad {
             acceleration,
-            ..BodyLoad::default()
+            speed: turn.map_or(0.0, |turn| turn.speed),
+            rate: turn.map_or(0.0, |turn| turn.acceleration),
         })
     }
 

@@ -93,7 +93,7 @@ pub fn body_beside(
                 Some(ring) => ring,
                 None => FactoredBody::new(solved_body(ring, inside, settings)?, None),
             };
-            let tied = TiedRing::new(ring.clone(), outside, body);
+            let tied = TiedRing::new(ring.clone(), outside, body, settings.frame);
             Ok(FactoredBody::new(Arc::new(tied), Some(ring)))
         }
         _ => Ok(FactoredBody::new(solved_body(ring, held, settings)?, None)),

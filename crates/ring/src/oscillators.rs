@@ -111,7 +111,8 @@ impl Oscillators {
         })
     }
 
-    /// The same with the inertia of the ring, where a shaft carries the body. The motion of its seat is a rigid one and
+    /// The same with the inertia of the ring, where a shaft carries the body and the ring has no frame of its own. The
+    /// motion of its seat is a rigid one and
     /// what that is not, by least squares over the seat.
     pub(crate) fn with_ring(mut self, inertia: impl FnOnce() -> RigidInertia) -> Oscillators {
         if self.on_shaft().is_none() {
@@ -151,9 +152,15 @@ impl Oscillators {
         self.functions.n()
     }
 
-    /// Loads on the oscillators of a load on all of the body; empty: none.
-    pub(crate) fn on_oscillators(&self, load: Option<BodyLoad>) -> Vec<f64> {
-        self.tie.on_oscillators(load)
+    /// Whether the ring is turned by the body, as a rigid one.
+    pub fn turns_ring(&self) -> bool {
+        self.ring.is_some()
+    }
+
+    /// Loads on the oscillators of a load on all of the body, by its weight and by its turning; empty: none.
+    pub(crate) fn on_oscillators(&self, load: Option<BodyLoad>) -> [Vec<f64>; 2] {
+        [load.map(BodyLoad::weight), load.and_then(BodyLoad::turning)]
+            .map(|load| self.tie.on_oscillators(load))
     }
 
     /// Whether the body carries other rings.
@@ -193,13 +200,16 @@ impl Oscillators {
         };
         let forces = self.tie.forces_on_body(&traction, acting.others);
         let mut at = self.modes.of_body.at_rest(&forces);
-        let by_load = self.tie.at_rest_under(acting.load);
-        at.iter_mut().zip(by_load).for_each(|(x, load)| *x += load);
+        let weight = self.tie.at_rest_under(acting.load.map(BodyLoad::weight));
+        at.iter_mut().zip(weight).for_each(|(x, load)| *x += load);
         let zero = vec![0.0; at.len()];
         let mut velocity = match &self.modes.of_body.frame {
             Some(frame) => frame.standing(self.way() * speed, &at),
             None => zero.clone(),
         };
+        // What it grows turns with it.
+        let growth = self.tie.at_rest_under(acting.load.and_then(BodyLoad::turning));
+        at.iter_mut().zip(growth).for_each(|(x, load)| *x += load);
         if let Some(shares) = self.on_shaft() {
             shares.add_motion(shaft[0], &mut at);
             shares.add_motion(shaft[1], &mut velocity);

@@ -11,6 +11,10 @@
 //! every step and are iterated there; S keeps its one factor. Statics takes the centrifugal and Euler forces of the
 //! undeformed rings: the rest is (W / first natural frequency)^2 of it.
 //!
+//! An elastic body on the shaft has the centrifugal and Euler forces of its undeformed shape with the ring on it
+//! ([`Model::body_load`](crate::Model::body_load)). Those on its displacement act in motion whether or not the scene
+//! asks for this effect ([`body::FrameForms`]).
+//!
 //! In motion, all but the load of the undeformed ring is left out where it is nothing, below a share `negligible` of
 //! the forces ([`crate::motion::LeftOut`]).
 //!
@@ -225,6 +229,14 @@ impl Effect for FrameRotation {
         !self.speeds.of(side).is_zero()
     }
 
+    fn frame_turn(&self, side: Side, time: f64) -> Option<FrameTurn> {
+        let speed = self.speeds.of(side);
+        self.turns_frame(side).then(|| FrameTurn {
+            speed: speed.at(time),
+            acceleration: speed.rate(time),
+        })
+    }
+
     fn inertia_limit(&self, side: Side) -> Option<InertiaLimit> {
         let speed = self.speeds.of(side);
         self.turns_frame(side).then(|| InertiaLimit {
@@ -239,13 +251,9 @@ impl Effect for FrameRotation {
     }
 
     fn add_loads(&self, model: &Model, now: &Now, loads: &mut Loads) -> Result<(), DynamicsError> {
-        let turns = |side: &Side| self.turns_frame(*side) && model.ring(*side).is_some();
-        for side in Side::BOTH.into_iter().filter(turns) {
-            let speed = self.speeds.of(side);
-            loads.frames[side.index()] = Some(FrameTurn {
-                speed: speed.at(now.time),
-                acceleration: speed.rate(now.time),
-            });
+        for side in Side::BOTH.into_iter().filter(|side| model.ring(*side).is_some()) {
+            let turn = self.frame_turn(side, now.time);
+            loads.frames[side.index()] = turn.or(loads.frames[side.index()]);
         }
         Ok(())
     }

@@ -84,9 +84,9 @@ impl<'a> Motion<'a> {
         };
         let [inner, outer] = model.backend.try_on_sides(build)?;
         let turning = wobbles(model, &settings.speeds).then(|| {
-            // A ring on a body turns where it sits.
-            let on_shaft = |ring: &&MovingRing| ring.body.tied().is_none_or(|body| body.on_shaft().is_none());
-            let ring = inner.as_ref().filter(on_shaft);
+            // A ring on a body turns where it sits, as a rigid one, or with a frame of its own.
+            let is_turned = |ring: &&MovingRing| ring.body.tied().is_some_and(|body| body.turns_ring());
+            let ring = inner.as_ref().filter(|ring| !is_turned(ring));
             ring.map(|ring| ring.body.rigid_inertia()).unwrap_or_default()
         });
         let [frame, _] = Side::BOTH.map(|side| model.frame(side));

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use body::{SeatTie, Surrounding};
 use contact::Side;
-use dynamics::effects::Gravity;
+use dynamics::effects::{FrameRotation, Gravity};
 use dynamics::kinematics::Speed;
 use dynamics::motion::{Motion, MotionSettings, MotionState, StepCache};
 use dynamics::{Backend, Hold, Model, RingModel, ShaftDof};
@@ -252,4 +252,84 @@ fn loads_on_a_body_keep_the_bits() {
     };
     let [one, two] = [1, 2].map(moved);
     assert!(one.last() == two.last());
+}
+
+/// Speed of the shafts that grow, rad/s.
+const FAST: f64 = 3000.0;
+
+fn turning(mut model: Model) -> Model {
+    let frame = FrameRotation::new(Speed::constant(FAST));
+    model.effects.push(Box::new(frame));
+    model
+}
+
+/// Wrong: a shaft that turns would not grow, or not as the body that it is together with its ring.
+#[test]
+fn a_turning_shaft_grows_as_one_mesh_with_its_ring() {
+    let own = hollow_shaft(3).0;
+    let one = turning(super::shaft::bearing(as_one(3), Backend::Sparse));
+    let off = |ring: RingModel| {
+        let model = super::shaft::bearing(ring, Backend::Auto);
+        differences(Side::Inner, &turning(model), &one)
+    };
+    let all = off(on_shaft(own.clone(), [26, 8], None));
+    let still = off(super::shaft::on_shaft(own, [26, 8], None));
+    println!("all {all:?}, the ring alone {still:?}");
+    assert!(all[0] < 3e-5 && all[1] < 1e-6 && all[2] < 1e-6, "{all:?}");
+    assert!(still[0] > 0.05 && still[2] > 1e-3, "{still:?}");
+}
+
+/// Wrong: in motion a turning shaft would grow otherwise than one mesh with its ring, its ring would be turned twice,
+/// or the ledger would lack what turns it. It begins undeformed, with a blow on shaft and tilt.
+#[test]
+fn a_growing_shaft_moves_as_one_mesh() {
+    let (own, n) = (hollow_shaft(3).0, 30);
+    let of = |model: Model| {
+        let model = turning(model);
+        let motion = Motion::new(&model, MotionSettings::conserving(STEP, Speed::constant(FAST))).unwrap();
+        let start = motion.rest([0.0, 0.0, 12e-6, 0.0, 0.0], [0.05, 0.0, 0.03, 0.0, 1.0]);
+        every_fifth(&motion, start, n)
+    };
+    let expected = of(free(as_one(3), Backend::Sparse));
+    let states = of(free(on_shaft(own, [24, 8], Some(60e3)), Backend::Auto));
+    let [found, expected] = [&states, &expected].map(|states| {
+        let tilts = states.iter().flat_map(|state| state.shaft[3..].to_vec());
+        let [shaft, forces] = histories(states, Side::Inner);
+        [shaft, tilts.collect(), forces]
+    });
+    let errors = [0, 1, 2].map(|i| difference(&found[i], &expected[i]));
+    println!("shaft, tilts and forces: {errors:?}");
+    assert!(
+        errors[0] < 2e-3 && errors[1] < 2e-3 && errors[2] < 1e-2,
+        "{errors:?}"
+    );
+    for state in &states {
+        let ledger = &state.ledger;
+        assert!(ledger.relative_defect().abs() < 1e-9, "{ledger:?}");
+    }
+}
+
+/// Wrong: a shaft that turns steadily would not stay as it has grown, as long as nothing but an axial force acts.
+#[test]
+fn a_grown_shaft_stays() {
+    let mut model = free(on_shaft(hollow_shaft(2).0, [6, 2], Some(20e3)), Backend::Auto);
+    model.effects.clear();
+    model.shaft = [
+        ShaftDof::Prescribed(0.0),
+        ShaftDof::Prescribed(0.0),
+        ShaftDof::Prescribed(12e-6),
+        ShaftDof::Prescribed(0.0),
+        ShaftDof::Prescribed(0.0),
+    ];
+    let model = turning(model);
+    let rest = equilibrium(&model);
+    let motion = Motion::new(&model, MotionSettings::conserving(STEP, Speed::constant(FAST))).unwrap();
+    let start = motion.start(&rest);
+    let first = start.forces.clone();
+    let state = every_fifth(&motion, start, 20).pop().unwrap();
+    let [now, first] =
+        [&state.forces, &first].map(|forces| forces.iter().flatten().copied().collect::<Vec<_>>());
+    let off = difference(&now, &first);
+    println!("forces after 20 steps: {off:e}");
+    assert!(off < 2e-2, "{off:e}");
 }

@@ -25,7 +25,7 @@ use std::sync::Arc;
 
 use dense::DenseCholesky;
 
-use crate::body::{ElasticBody, HeldRing, RingShape};
+use crate::body::{ElasticBody, Frame, HeldRing, RingShape};
 use crate::error::RingError;
 use crate::factored::FactoredBody;
 use crate::integrator::StepScheme;
@@ -47,9 +47,13 @@ pub(crate) struct TiedRing {
 }
 
 impl TiedRing {
-    /// Ties a ring, free with the functionals of the seat as its mount, to a body; `outside` is the ring without it.
-    pub fn new(ring: Arc<FactoredBody>, outside: HeldRing, body: Oscillators) -> TiedRing {
-        let body = body.with_ring(|| ring.rigid_inertia());
+    /// Ties a ring, free with the functionals of the seat as its mount, to a body; `outside` is the ring without it. A
+    /// ring whose own step has no `frame` that turns is turned as a rigid one.
+    pub fn new(ring: Arc<FactoredBody>, outside: HeldRing, body: Oscillators, frame: Frame) -> TiedRing {
+        let body = match frame {
+            Frame::Still => body.with_ring(|| ring.rigid_inertia()),
+            Frame::Turning | Frame::Stiffened => body,
+        };
         TiedRing {
             ring,
             held: outside,

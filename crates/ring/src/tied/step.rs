@@ -88,7 +88,9 @@ struct TiedStep<'a> {
     alone: Vec<f64>,
     /// Mean load of others on the oscillators; empty: none.
     others: Vec<f64>,
-    /// The same of a load on all of the body.
+    /// The same of a load on all of the body, by its weight and by its turning.
+    on_body: [Vec<f64>; 2],
+    /// Their sum.
     of_body: Vec<f64>,
     /// Inertia of the turning frame of the body; None where it does not turn.
     frame: Option<BodyFrame>,
@@ -134,7 +136,8 @@ impl StepFactor for TiedFactor {
             .body()
             .expect("the state of a tied ring has that of its body");
         let frame = self.body.frame(known.load.body_turn, old);
-        let of_body = self.body.body.on_oscillators(known.load.body_load);
+        let on_body = self.body.body.on_oscillators(known.load.body_load);
+        let of_body = summed(&on_body[0], &on_body[1]);
         let mut step = TiedStep {
             factor: self,
             ring: self.ring.begin(from, known, contacts),
@@ -144,6 +147,7 @@ impl StepFactor for TiedFactor {
             frame,
             body: self.body.step(old, &of_body),
             of_body,
+            on_body,
             own_seat: Vec::new(),
             old,
             answer: PortAnswer::default(),
@@ -357,16 +361,15 @@ impl ElasticStep for TiedStep<'_> {
             End::Done(mut ended) => {
                 let factor = &self.factor.body;
                 let moved = factor.advanced(self.old, &self.body, &lam, forces.mount);
-                if !self.of_body.is_empty() {
+                let work = |load: &[f64]| -> f64 {
                     let change = moved.0[0].iter().zip(&self.old.0[0]);
-                    let work = change.zip(&self.of_body).map(|((b, a), p)| p * (b - a));
-                    ended.works.load += work.sum::<f64>();
-                }
+                    change.zip(load).map(|((b, a), f)| f * (b - a)).sum()
+                };
+                let [weight, turning] = &self.on_body;
+                ended.works.load += work(weight);
+                ended.works.frame += work(turning);
                 if let Some(frame) = &self.frame {
-                    let change = moved.0[0].iter().zip(&self.old.0[0]);
-                    let loads = frame.load.iter().zip(&frame.of_ring);
-                    let work = change.zip(loads).map(|((b, a), (f, g))| (f + g) * (b - a));
-                    ended.works.frame += work.sum::<f64>();
+                    ended.works.frame += work(&summed(&frame.load, &frame.of_ring));
                 }
                 let [kinetic, strain] = factor.body.energies(Some(&moved));
                 ended.energies[0] += kinetic;

@@ -34,12 +34,8 @@ const REFUSED_OUTSIDE: [(&str, &str); 4] = [
     ("temperature", "its seat grows with a rigid or round housing"),
 ];
 /// The same of a body on the shaft.
-const REFUSED_ON_SHAFT: [(&str, &str); 3] = [
+const REFUSED_ON_SHAFT: [(&str, &str); 2] = [
     ("fit", "its pressure is that of a rigid or round shaft"),
-    (
-        "frame_rotation",
-        "what the body grows by its own turning is not solved",
-    ),
     ("temperature", "its seat grows with a rigid or round shaft"),
 ];
 
@@ -263,8 +259,10 @@ impl RawSceneBody {
             format!("{typed:?}"),
             "expected \"+z\", as the mesh stands, or \"-z\", turned by 180 deg about x",
         );
-        let is_loaded = context.effects.contains(&"gravity");
-        if is_loaded && self.stiffness.is_some() && self.mass.is_none() {
+        let is_heavy = context.effects.contains(&"gravity");
+        let grows = ring == RingName::Inner && context.effects.contains(&"frame_rotation");
+        let is_loaded = is_heavy || grows;
+        if is_heavy && self.stiffness.is_some() && self.mass.is_none() {
             assumed.push(format!(
                 "{key} comes from matrices without a mass, so effects.gravity does not make it sag; add mass and \
                  mass_unit for that"

@@ -281,10 +281,6 @@ fn a_body_on_the_shaft_carries_the_inner_ring_and_goes_with_what_it_knows() {
             "effects.fit does not go with body \"plummer block\": its pressure is that of a rigid or round shaft",
         ),
         (
-            on_shaft("[effects.frame_rotation]"),
-            "effects.frame_rotation does not go with body \"plummer block\": what the body grows by its own turning",
-        ),
-        (
             on_shaft("").replacen("flexible = true", "flexible = false", 1),
             "body \"plummer block\" carries the inner ring, but that ring is rigid; set inner.flexible = true",
         ),
