@@ -197,8 +197,8 @@ fn units_that_make_no_solid_are_doubted() {
     let stiff = doubts("[static]", ["\"N/m\"", "\"N/mm\""]);
     let part = "body \"housing\": between its nodes it is as stiff as a solid of ";
     let line = stiff.lines().find(|line| line.contains(part)).expect(&stiff);
-    let rest = " GPa, expected 1 to 5000 GPa: check stiffness_unit and length_unit, and that `stiffness` is not the file \
-                of the mass";
+    let rest = " GPa, expected 1 to 5000 GPa: check stiffness_unit and length_unit, and that `stiffness` is not \
+                the file of the mass";
     assert!(line.ends_with(rest), "{line}");
     let heavy = doubts(modes, ["\"kg\"", "\"g\""]);
     let part = "of the box round its nodes, expected 20 to 5e5 kg/m3: check mass_unit and length_unit";

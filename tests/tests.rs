@@ -54,6 +54,7 @@ mod rigid_ring;
 mod schedules;
 mod sectors;
 mod several;
+mod several_alone;
 mod several_critical_speed;
 mod several_damping;
 mod several_export;

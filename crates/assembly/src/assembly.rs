@@ -35,7 +35,7 @@ pub struct Assembly {
     pub load: Vec<f64>,
 }
 
-/// Factors of the rings, one for each type, and what each bearing has found of them.
+/// Rings factored, once those of a type, and what each bearing has found of them.
 pub struct AssemblySolver {
     solvers: Vec<StaticSolver>,
     rigid: Vec<StaticSolver>,
@@ -144,7 +144,7 @@ impl AssemblySolution {
 }
 
 impl AssemblySolver {
-    /// Factors the rings of every type.
+    /// Factors the rings of every type, once also where they sit in seats of their own.
     pub fn new(assembly: &Assembly) -> Result<AssemblySolver, AssemblyError> {
         let mut first_of: Vec<usize> = Vec::new();
         let mut type_of = Vec::new();
@@ -157,16 +157,16 @@ impl AssemblySolver {
                 first_of.push(i);
             }
         }
-        let of = |make: &dyn Fn(&Model) -> Result<StaticSolver, dynamics::DynamicsError>| {
-            let solver = |&i: &usize| {
-                let bearing = &assembly.bearings[i];
-                make(&bearing.model).map_err(AssemblyError::of_bearing(&bearing.name))
-            };
-            first_of.iter().map(solver).collect::<Result<Vec<_>, _>>()
-        };
+        let model = |i: &usize| &assembly.bearings[*i].model;
+        let mut solvers: Vec<StaticSolver> = Vec::new();
+        for i in &first_of {
+            let made: Vec<_> = first_of.iter().map(model).zip(&solvers).collect();
+            let solver = StaticSolver::new_beside(model(i), &made);
+            solvers.push(solver.map_err(AssemblyError::of_bearing(&assembly.bearings[*i].name))?);
+        }
         Ok(AssemblySolver {
-            solvers: of(&StaticSolver::new)?,
-            rigid: of(&|model| Ok(StaticSolver::rigid(model)))?,
+            rigid: first_of.iter().map(|i| StaticSolver::rigid(model(i))).collect(),
+            solvers,
             columns: type_of.iter().map(|_| ContactColumns::default()).collect(),
             type_of,
             bodies: shared_bodies(&assembly.bearings)?,

@@ -66,8 +66,8 @@ impl Apparent {
         let mut lines = Vec::new();
         if !(MODULI[0]..=MODULI[1]).contains(&self.modulus) {
             lines.push(format!(
-                "body {name:?}: between its nodes it is as stiff as a solid of {:.2e} GPa, expected {} to {} GPa: check \
-                 stiffness_unit and length_unit, and that `stiffness` is not the file of the mass",
+                "body {name:?}: between its nodes it is as stiff as a solid of {:.2e} GPa, expected {} to {} GPa: \
+                 check stiffness_unit and length_unit, and that `stiffness` is not the file of the mass",
                 1e-9 * self.modulus,
                 1e-9 * MODULI[0],
                 1e-9 * MODULI[1]

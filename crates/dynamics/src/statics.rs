@@ -50,7 +50,7 @@ pub struct StaticRing {
     /// The ring.
     pub solver: RingSolver,
     /// Where contacts find it.
-    pub raceway: Raceway,
+    pub raceway: Arc<Raceway>,
 }
 
 /// Inverse compliance of the contacts on both rings, inner first; none yet by default.
@@ -80,9 +80,30 @@ pub fn settings(model: &Model, side: Side) -> StaticSettings {
 impl StaticRing {
     /// Assembles and factors the stiffness of the ring on `side`.
     pub fn new(model: &Model, side: Side, ring: &RingModel) -> Result<StaticRing, DynamicsError> {
-        let mut solver = RingSolver::new(ring, settings(model, side))?;
-        let raceway = || Raceway::new(ring, model.contact.mode);
-        let raceway = solver.laps.time(FACTOR, raceway);
+        StaticRing::beside((model, side, ring), &[])
+    }
+
+    /// The same beside other bearings: it takes what it has in common with their rings.
+    fn beside(
+        (model, side, ring): (&Model, Side, &RingModel),
+        made: &[(&Model, &StaticSolver)],
+    ) -> Result<StaticRing, DynamicsError> {
+        let rings = made.iter().filter_map(|(other, solver)| {
+            let (of, made) = (other.ring(side)?, solver.ring(side)?);
+            Some((*other, of, made))
+        });
+        let solvers: Vec<_> = rings.clone().map(|(_, of, made)| (of, &made.solver)).collect();
+        let mut solver = RingSolver::beside(ring, settings(model, side), &solvers)?;
+        let alike = rings.filter(|(other, _, made)| {
+            other.contact.mode == model.contact.mode && made.solver.shares_factor(&solver)
+        });
+        let raceway = match alike.map(|(_, _, made)| made.raceway.clone()).next() {
+            Some(raceway) => raceway,
+            None => {
+                let raceway = || Raceway::new(ring, model.contact.mode);
+                Arc::new(solver.laps.time(FACTOR, raceway))
+            }
+        };
         Ok(StaticRing { solver, raceway })
     }
 }
@@ -90,9 +111,17 @@ impl StaticRing {
 impl StaticSolver {
     /// Factors both rings, on two threads if there are two.
     pub fn new(model: &Model) -> Result<StaticSolver, DynamicsError> {
+        StaticSolver::new_beside(model, &[])
+    }
+
+    /// The same beside other bearings: rings that are alike but for the bodies they are tied to are factored once.
+    pub fn new_beside(
+        model: &Model,
+        made: &[(&Model, &StaticSolver)],
+    ) -> Result<StaticSolver, DynamicsError> {
         let build = |side: Side| {
-            let ring = model.ring(side);
-            ring.map(|ring| StaticRing::new(model, side, ring)).transpose()
+            let ring = model.ring(side).map(|ring| (model, side, ring));
+            ring.map(|ring| StaticRing::beside(ring, made)).transpose()
         };
         let rings = model.backend.try_on_sides(build)?;
         let mut timing = Laps::default();

@@ -93,31 +93,34 @@ fn finished(state: Option<SeatState>, dir: &Path) -> Result<Option<SeatSummary>,
     Ok(state.map(|state| state.finish(dir)).transpose()?)
 }
 
+/// The ring on the shaft.
+const ON_SHAFT: Side = Side::BOTH[0];
+
 /// Mean motion of the inner ring's seat beside the rigid motion of the shaft whose body it sits on, at the axis point,
 /// in the frame of the bearing, m and rad; None where the inner ring is on no such body. Seats were resolved before.
 pub fn beside_shaft_at_rest(model: &Model, solution: &StaticSolution) -> Option<[f64; N_SHAFT]> {
     let (ring, tie) = on_shaft(model)?;
-    let functions = ring.seat_functions(Side::Inner.name()).ok().flatten()?;
-    let field = solution.elastic[Side::Inner.index()].as_ref()?;
+    let functions = ring.seat_functions(ON_SHAFT.name()).ok().flatten()?;
+    let field = solution.elastic[ON_SHAFT.index()].as_ref()?;
     Some(at_axis_point(model, tie, &functions.measure(field)))
 }
 
 /// The same in a motion.
 pub fn beside_shaft_in_motion(motion: &Motion<'_>, state: &MotionState) -> Option<[f64; N_SHAFT]> {
     let (_, tie) = on_shaft(motion.model())?;
-    let moved = state.rings[Side::Inner.index()].as_ref()?.body()?;
-    let load = motion.body_load(state, Side::Inner);
-    let traction = motion.tied(Side::Inner)?.traction(moved, load)?;
+    let moved = state.rings[ON_SHAFT.index()].as_ref()?.body()?;
+    let load = motion.body_load(state, ON_SHAFT);
+    let traction = motion.tied(ON_SHAFT)?.traction(moved, load)?;
     Some(at_axis_point(motion.model(), tie, &traction.motion))
 }
 
 /// The inner ring on the body of a shaft.
 fn on_shaft(model: &Model) -> Option<(&RingModel, &Arc<SeatTie>)> {
-    tied(model, Side::Inner).filter(|(_, tie)| tie.carried().is_some())
+    tied(model, ON_SHAFT).filter(|(_, tie)| tie.carried().is_some())
 }
 
 fn at_axis_point(model: &Model, tie: &SeatTie, motion: &[f64]) -> [f64; N_SHAFT] {
-    let [_, z] = model.geometry.groove_centre(Side::Inner);
+    let [_, z] = model.geometry.groove_centre(ON_SHAFT);
     let [ux, uy, uz, rx, ry, _] = tie.space.mean_motion(motion, z);
     [ux, uy, uz, rx, ry]
 }

@@ -18,7 +18,7 @@ use assembly::{
 use body::{BodySeat, SeatBasis, SeatCylinder, SeatFunctions, SeatSpace, SeatTie, Surrounding};
 use contact::Side;
 use dynamics::kinematics::Speed;
-use dynamics::{ContactMode, Hold, RingModel};
+use dynamics::{ContactMode, Hold, RingModel, StaticSolver};
 use fem::Material;
 use mesh::{ElementKind, Facet, Mesh, Origin};
 
@@ -283,6 +283,35 @@ fn a_body_in_two_parts_is_two_bodies() {
         let [found, expected] = [found, expected].map(|s| s.elastic[1].as_ref().unwrap());
         assert!(off(found, expected) < 1e-8);
     }
+}
+
+/// Wrong: rings of one type would be factored once more for each seat in which they sit, or a ring with the factor of
+/// another would not be what it is alone in its own seat, or rings of two steels would share one.
+#[test]
+fn rings_of_one_type_are_factored_once_whatever_their_seats() {
+    let ties = in_one(true, 70e9);
+    let mut list = pair(ties.clone(), [0, 1]);
+    let is_shared = |of: &AssemblySolver, side: Side| {
+        let [first, second] = [0, 1].map(|i| &of.of_bearing(i).ring(side).unwrap().solver);
+        first.shares_factor(second)
+    };
+    let solver = AssemblySolver::new(&list).unwrap();
+    assert_eq!(solver.types().len(), 2, "each is tied to a seat of its own");
+    assert!(Side::BOTH.iter().all(|&side| is_shared(&solver, side)));
+    let n = list.bearings[1].model.ring(Side::Outer).unwrap().mesh.n_dofs();
+    let load: Vec<f64> = (0..n).map(|i| (0.7 * i as f64).sin()).collect();
+    let field = |of: &StaticSolver| of.ring(Side::Outer).unwrap().solver.solve(load.clone(), 1);
+    let [first, second] = [0, 1].map(|i| field(solver.of_bearing(i)));
+    let alone = StaticSolver::new(&list.bearings[1].model).unwrap();
+    assert!(second == field(&alone), "the bits of a ring alone");
+    assert!(off(&first, &second) > 1e-3, "each has its own seat");
+    list.bearings[1].model.rings[1] = Some(Arc::new(RingModel {
+        tie: Some(ties[1].clone()),
+        material: Material::new(200e9, 0.3, 7800.0).unwrap(),
+        ..ring(Side::Outer, LEVEL, Hold::MeanMotion)
+    }));
+    let solver = AssemblySolver::new(&list).unwrap();
+    assert_eq!(Side::BOTH.map(|side| is_shared(&solver, side)), [true, false]);
 }
 
 /// Wrong: the sleeve would not stand where the forces of both rings put it. Its displacement under both, measured on

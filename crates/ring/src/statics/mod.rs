@@ -5,6 +5,7 @@
 //! [`crate::support`]).
 
 mod harmonic;
+mod held;
 mod prepared;
 mod seat;
 mod sector;
@@ -13,7 +14,8 @@ mod sparse;
 mod stiffness;
 mod tie;
 
+pub use held::iterations_note;
 pub use prepared::{Prepared, StaticSettings};
-pub use solver::{ASSEMBLE, FACTOR, RingSolver, iterations_note};
+pub use solver::{ASSEMBLE, FACTOR, RingSolver};
 pub use stiffness::{Factored, HeldStiffness, Numbers};
 pub use tie::SeatResponse;

@@ -19,6 +19,7 @@ use body::{SeatFunctions, SeatTie};
 use dense::DenseLu;
 use mesh::NodePositions;
 
+use super::held::HeldFactor;
 use crate::error::RingError;
 use crate::model::RingModel;
 use crate::vectors::dot;
@@ -36,14 +37,32 @@ pub struct SeatResponse {
     pub forces: Vec<f64>,
 }
 
+/// The seat of a ring before a body is tied to it.
+pub(super) struct SeatOfRing {
+    functions: SeatFunctions,
+    /// A, m/N, `[n][n]` flat.
+    compliance: Vec<f64>,
+}
+
 /// The joint of a factored ring.
 pub(super) struct RingTie {
-    functions: SeatFunctions,
+    /// Rings of one type whose seats have the same functions share it.
+    seat: Arc<SeatOfRing>,
     places: NodePositions,
     /// Factor over (lam, q / scale).
     saddle: DenseLu,
     /// Unit of q, m: makes both parts of the matrix equally large.
     scale: f64,
+}
+
+impl SeatOfRing {
+    /// The functions of a seat and what they do to its ring in its mean motion. Cost: a solve per function.
+    pub fn new(ring: &HeldFactor, functions: SeatFunctions) -> SeatOfRing {
+        SeatOfRing {
+            compliance: ring.seat_compliance(&functions),
+            functions,
+        }
+    }
 }
 
 impl RingModel {
@@ -58,14 +77,10 @@ impl RingModel {
 }
 
 impl RingTie {
-    /// Ties a ring whose seat has the compliance A = `matrix` (m/N, `[n][n]` flat) in its mean motion.
-    pub fn new(
-        mut matrix: Vec<f64>,
-        ring: &RingModel,
-        functions: SeatFunctions,
-        tie: &Arc<SeatTie>,
-    ) -> Result<RingTie, RingError> {
-        let n = functions.n();
+    /// Ties a ring with its seat in its mean motion to a body.
+    pub fn new(seat: Arc<SeatOfRing>, ring: &RingModel, tie: &Arc<SeatTie>) -> Result<RingTie, RingError> {
+        let (functions, n) = (&seat.functions, seat.functions.n());
+        let mut matrix = seat.compliance.clone();
         matrix.iter_mut().zip(&tie.flexibility).for_each(|(a, f)| *a += f);
         let scale = (0..n).map(|i| matrix[n * i + i]).fold(0.0, f64::max);
         let mut tied = vec![0.0; (n + N_RIGID) * (n + N_RIGID)];
@@ -84,40 +99,46 @@ impl RingTie {
         }
         let saddle = DenseLu::factor(n + N_RIGID, &tied).map_err(|source| RingError::Tie { source })?;
         Ok(RingTie {
-            functions,
+            seat,
             places: ring.mesh.nodes.clone(),
             saddle,
             scale,
         })
     }
 
+    /// The seat, if it has these functions.
+    pub fn seat_with(&self, functions: &SeatFunctions) -> Option<Arc<SeatOfRing>> {
+        (self.seat.functions == *functions).then(|| self.seat.clone())
+    }
+
     /// Rows and columns of the saddle.
     pub fn n(&self) -> usize {
-        self.functions.n() + N_RIGID
+        self.seat.functions.n() + N_RIGID
     }
 
     /// Number of functions.
     pub fn n_functions(&self) -> usize {
-        self.functions.n()
+        self.seat.functions.n()
     }
 
     /// Bytes of the joint.
     pub fn bytes(&self) -> usize {
-        size_of::<f64>() * (self.n() * self.n() + 3 * self.places.len()) + self.functions.bytes()
+        let matrices = self.n() * self.n() + self.seat.compliance.len();
+        size_of::<f64>() * (matrices + 3 * self.places.len()) + self.seat.functions.bytes()
     }
 
     /// Nodes of the seat.
     pub fn nodes(&self) -> &[usize] {
-        &self.functions.nodes
+        &self.seat.functions.nodes
     }
 
     /// Phi^T u and scale R^T f of a held displacement, m, and the load on the ring, N, that made it.
     pub fn coupling(&self, displacement: &[f64], load: &[f64]) -> Vec<f64> {
-        let mut coupling = self.functions.measure(displacement);
+        let mut coupling = self.seat.functions.measure(displacement);
         let mut resultant = [0.0; N_RIGID];
         for (x, f) in self.places.iter().zip(load.chunks_exact(3)) {
             if f.iter().any(|f| *f != 0.0) {
-                for (row, f) in self.functions.space.rigid_motions(*x).iter().zip(f) {
+                for (row, f) in self.seat.functions.space.rigid_motions(*x).iter().zip(f) {
                     (0..N_RIGID).for_each(|k| resultant[k] += row[k] * f);
                 }
             }
@@ -153,14 +174,14 @@ impl RingTie {
 
     /// Adds the forces of the body to a load.
     pub fn add_forces(&self, answer: &[f64], load: &mut [f64]) {
-        self.functions.add_load(&answer[..self.n_functions()], load);
+        self.seat.functions.add_load(&answer[..self.n_functions()], load);
     }
 
     /// Adds the rigid motion to a displacement.
     pub fn add_motion(&self, answer: &[f64], displacement: &mut [f64]) {
         let q = &answer[self.n_functions()..];
         for (x, u) in self.places.iter().zip(displacement.chunks_exact_mut(3)) {
-            for (row, u) in self.functions.space.rigid_motions(*x).iter().zip(u) {
+            for (row, u) in self.seat.functions.space.rigid_motions(*x).iter().zip(u) {
                 *u += self.scale * row.iter().zip(q).map(|(r, q)| r * q).sum::<f64>();
             }
         }

@@ -426,24 +426,6 @@ fn bad_lists_are_refused_with_advice() {
             "pairing.offset is 8 mm; expected -1 to 1 mm",
         ),
         (
-            list(BEAM, "[pairing]\noffset = \"8 um\"\nbearings = [\"front\"]\n"),
-            "pairing.offset is 8 um, but all bearings have the same orientation",
-        ),
-        (
-            list(
-                BEAM,
-                "[pairing]\noffset = \"8 um\"\nbearings = [\"front\", \"back\"]\n",
-            ),
-            "pairing.bearings has \"back\"; expected names of bearings: front, rear",
-        ),
-        (
-            list(
-                BEAM,
-                "[pairing]\nspring = \"500 N\"\nsliding = \"rear\"\nbearings = [\"front\"]\n",
-            ),
-            "pairing.bearings needs offset, the distance by which these bearings press on each other",
-        ),
-        (
             list(BEAM, "[pairing]\nspring = \"500 N\"\n"),
             "pairing.spring needs sliding, the bearing whose outer ring slides: one of front, rear",
         ),

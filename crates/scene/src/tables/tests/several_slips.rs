@@ -15,6 +15,30 @@ fn a_negative_spring_is_one_problem() {
     assert!(!said.contains("spring_preload"), "{said}");
 }
 
+/// Wrong: an offset would act on a bearing that is not there, on one side alone, or names would stand without it.
+#[test]
+fn an_offset_of_some_bearings_needs_them_on_both_sides() {
+    let lists = Lists::new("offset_of_some");
+    let cases = [
+        (
+            "offset = \"8 um\"\nbearings = [\"front\"]",
+            "pairing.offset is 8 um, but all bearings have the same orientation",
+        ),
+        (
+            "offset = \"8 um\"\nbearings = [\"front\", \"back\"]",
+            "pairing.bearings has \"back\"; expected names of bearings: front, rear",
+        ),
+        (
+            "spring = \"500 N\"\nsliding = \"rear\"\nbearings = [\"front\"]",
+            "pairing.bearings needs offset, the distance by which these bearings press on each other",
+        ),
+    ];
+    for (keys, expected) in cases {
+        let said = lists.message(&list(BEAM, &format!("[pairing]\n{keys}\n")));
+        assert!(said.contains(expected), "{keys}: {said}");
+    }
+}
+
 /// Wrong: a shaft would not take the name that a body takes, or have other numbers than the name stands for.
 #[test]
 fn the_material_of_a_shaft_has_a_name() {
