@@ -152,6 +152,25 @@ impl HeldSeats<'_> {
             .map(|doubt| format!("; {doubt}"))
             .collect()
     }
+
+    /// Takes the forces that hold the seats out of a block of vectors of forces. X is read once for all.
+    fn without_reactions(&self, forces: &mut [f64], n_vectors: usize) {
+        let n = self.n();
+        let blocks = self.columns.par_chunks(AT_A_TIME * n);
+        let motions: Vec<_> = blocks
+            .map(|columns| inner_products(n, columns, columns.len() / n, forces, n_vectors))
+            .collect();
+        for (vector, force) in forces.chunks_exact_mut(n).enumerate() {
+            let own = |block: &Vec<f64>| {
+                let width = block.len() / n_vectors;
+                block[width * vector..width * (vector + 1)].to_vec()
+            };
+            let mut reactions: Vec<f64> = motions.iter().flat_map(own).collect();
+            self.flexibility.solve(&mut reactions, 1);
+            let loads = self.body.seat_loads(&reactions);
+            force.iter_mut().zip(loads).for_each(|(f, load)| *f -= load);
+        }
+    }
 }
 
 impl EigenProblem for HeldSeats<'_> {
@@ -172,22 +191,13 @@ impl EigenProblem for HeldSeats<'_> {
     }
 
     fn solve(&self, mut b: Vec<f64>, n_vectors: usize) -> Vec<f64> {
-        b.chunks_exact_mut(self.n())
-            .for_each(|force| self.remove_reactions(force));
+        self.without_reactions(&mut b, n_vectors);
         self.body.factor.solve(&mut b, n_vectors);
         b
     }
 
     fn remove_reactions(&self, force: &mut [f64]) {
-        let n = force.len();
-        let blocks = self.columns.par_chunks(AT_A_TIME * n);
-        let products: Vec<_> = blocks
-            .map(|columns| inner_products(n, columns, columns.len() / n, force, 1))
-            .collect();
-        let mut reactions = products.concat();
-        self.flexibility.solve(&mut reactions, 1);
-        let loads = self.body.seat_loads(&reactions);
-        force.iter_mut().zip(loads).for_each(|(f, load)| *f -= load);
+        self.without_reactions(force, 1);
     }
 }
 

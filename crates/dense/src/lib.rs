@@ -19,8 +19,8 @@ mod forms;
 
 pub use blocks::BlockLu;
 pub use eigen::{
-    ComplexNumber, ComplexPair, EigenProblem, Eigenpairs, LanczosSettings, Searched, dense_lowest,
-    general_eigen, inner_products, lanczos, linear_combinations, lowest_pairs, symmetric_eigen,
+    ComplexNumber, ComplexPair, EigenProblem, Eigenpairs, LanczosSettings, Searched, add_combinations,
+    dense_lowest, general_eigen, inner_products, lanczos, linear_combinations, lowest_pairs, symmetric_eigen,
 };
 pub use error::DenseError;
 pub use factors::{DenseCholesky, DenseLu, cholesky_in_place};

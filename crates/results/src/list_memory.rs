@@ -142,7 +142,7 @@ fn steps_of(analysis: &Analysis, bearings: &[BearingMemory<'_>]) -> Option<usize
 }
 
 /// Forecast of the largest resident memory of the natural modes of a list, bytes: each ring has factor, stiffness and
-/// mass of its own, and the search keeps vectors over all of them. Good to a quarter: 736 MB for 830 MB, two bearings
+/// mass of its own, and the search keeps vectors over all of them. Good to a quarter: 742 MB for 865 MB, two bearings
 /// with rings of 51 000 dofs each, 20 modes.
 pub fn forecast_modes_of_list(wanted: &Modes, bearings: &[BearingMemory<'_>]) -> usize {
     let models = bearings.iter().map(|bearing| bearing.model);

@@ -4,10 +4,10 @@
 //! are hundreds on the same nodes: they are kept as a matrix, whose nodes are looked up once.
 
 use body::{SeatFunctions, SeatRows};
+use dense::inner_products;
 use solver::LinearSolver;
 
 use crate::sparse::{SparseLoad, fill, sparse_dot};
-use crate::vectors::dot;
 
 /// Functionals of a mount.
 #[derive(Clone, Debug, Default)]
@@ -88,9 +88,9 @@ impl MountRows {
     /// Products of many functionals with each other, `[n][n]` flat.
     pub fn gram(&self) -> Vec<f64> {
         let dense = self.dense.as_ref().expect("many functionals have their matrix");
-        let rows: Vec<Vec<f64>> = (0..dense.rows.n()).map(|k| dense.rows.row(k)).collect();
-        let row = |a: &Vec<f64>| rows.iter().map(|b| dot(a, b)).collect::<Vec<f64>>();
-        rows.iter().flat_map(row).collect()
+        let (n, rows) = (dense.rows.n(), &dense.rows);
+        let rows: Vec<f64> = (0..n).flat_map(|k| rows.row(k)).collect();
+        inner_products(dense.places.len(), &rows, n, &rows, n)
     }
 
     /// Loads of forces on the functionals: index and value, of many functionals each index once.

@@ -1,5 +1,7 @@
 //! Sums of long vectors, number by number: the same bits on any number of threads.
 
+use std::ops::Range;
+
 use rayon::prelude::*;
 
 /// Numbers of one task.
@@ -35,6 +37,14 @@ pub(crate) fn add_part(sum: &mut [f64], x: &[f64]) {
 /// a . b, summed in order.
 pub fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(x, y)| x * y).sum()
+}
+
+/// Some rows of a block of columns of `n` rows, column-major.
+pub fn rows_of(columns: &[f64], n: usize, rows: &Range<usize>) -> Vec<f64> {
+    let mut own = Vec::with_capacity(columns.len() / n.max(1) * rows.len());
+    let columns = columns.chunks_exact(n.max(1));
+    columns.for_each(|column| own.extend_from_slice(&column[rows.clone()]));
+    own
 }
 
 /// Component-wise a + b.

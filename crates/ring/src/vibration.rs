@@ -6,6 +6,9 @@
 //! oscillators of this after their own coordinates (`tied::vibration`). Of a body on the shaft these know the motion of
 //! the shaft: the partner of its rings acts on them.
 
+use std::sync::Arc;
+
+use body::SeatTie;
 use contact::NodalWeights;
 use rayon::prelude::*;
 use solver::LinearSolver;
@@ -17,7 +20,8 @@ use crate::harmonic::periodic::Periodic;
 use crate::matrices::{NodalMatrices, SparseMatrices};
 use crate::model::{Backend, Hold, RingModel};
 use crate::sparse::{SparseLoad, sparse_dot};
-use crate::tied::vibration::{VibratingJoint, VibratingTie};
+use crate::tied::vibration::{VibratingJoint, VibratingSeat, VibratingTie};
+use crate::vectors::rows_of;
 
 /// What is made ready to vibrate.
 #[derive(Clone, Copy)]
@@ -31,21 +35,52 @@ pub struct RingToVibrate<'a> {
 }
 
 impl RingToVibrate<'_> {
+    /// The joint with a body, where a partner is there.
+    fn tie(&self) -> Option<&Arc<SeatTie>> {
+        self.ring.tie.as_ref().filter(|_| self.partner.is_some())
+    }
+
+    /// How it is held, and by what.
+    fn held(&self) -> (Hold, Partner) {
+        match self.partner {
+            Some((partner, _)) => (self.ring.hold, partner),
+            None => (Hold::Free, Partner::AT_REST),
+        }
+    }
+
+    /// Whether it is alone what another is: masses of partners and bodies apart.
+    fn is_like(&self, other: &RingToVibrate<'_>) -> bool {
+        let space = |of: &RingToVibrate<'_>| of.tie().map(|tie| tie.space);
+        let is_same = std::ptr::eq(self.ring, other.ring);
+        (self.name, self.held()) == (other.name, other.held())
+            && space(self) == space(other)
+            && (is_same || self.ring.is_like(other.ring))
+    }
+
     /// Whether it is tied to the body of another ring: they vibrate together.
     pub fn shares_body(&self, other: &RingToVibrate<'_>) -> bool {
         let body = |of: &RingToVibrate<'_>| {
             let tie = of.ring.tie.as_ref().filter(|_| of.partner.is_some())?;
-            Some(std::sync::Arc::as_ptr(tie.body.as_ref()?))
+            Some(Arc::as_ptr(tie.body.as_ref()?))
         };
         body(self).is_some_and(|own| body(other) == Some(own))
     }
 }
 
-/// A ring ready to vibrate.
-pub struct VibratingRing {
+/// A ring as it vibrates alone: what does not depend on masses of its partner, or to which body it is tied.
+struct RingAlone {
     held: HeldRing,
     matrices: Box<dyn NodalMatrices>,
+    /// Of K + s M.
     factor: Box<dyn LinearSolver>,
+    /// Of a tied ring.
+    seat: Option<Arc<VibratingSeat>>,
+}
+
+/// A ring ready to vibrate.
+pub struct VibratingRing {
+    /// Rings that are alike share it.
+    alone: Arc<RingAlone>,
     /// Its first coordinate in its group.
     first: usize,
     /// Held motions as generalised loads, in coordinates of the group.
@@ -65,16 +100,11 @@ pub struct VibratingRings {
     tie: Option<VibratingTie>,
 }
 
-impl VibratingRing {
-    fn new(
-        RingToVibrate { name, ring, partner }: RingToVibrate<'_>,
-        shift: f64,
-        backend: Backend,
-    ) -> Result<(VibratingRing, Option<VibratingJoint>), RingError> {
-        let hold = partner.map_or(Hold::Free, |_| ring.hold);
-        let tied = ring.tie.as_ref().filter(|_| partner.is_some());
-        let (of, masses) = partner.unwrap_or((Partner::AT_REST, [0.0; 5]));
-        let held = HeldRing::new(name, ring, Held { hold, partner: of }, backend)?;
+impl RingAlone {
+    /// Assembles a ring and factors K + `shift` M.
+    fn new(of: &RingToVibrate<'_>, shift: f64, backend: Backend) -> Result<RingAlone, RingError> {
+        let (name, ring, (hold, partner)) = (of.name, of.ring, of.held());
+        let held = HeldRing::new(name, ring, Held { hold, partner }, backend)?;
         let error = |source| RingError::Solver { side: name, source };
         let coefficients = [shift, 1.0];
         let (matrices, factor): (Box<dyn NodalMatrices>, Box<dyn LinearSolver>) =
@@ -93,17 +123,28 @@ impl VibratingRing {
                     (Box::new(matrices), Box::new(factor.map_err(error)?))
                 }
             };
+        let functions = of.tie().map(|_| ring.seat_functions(name)).transpose()?.flatten();
         let of_ring = (&*factor, held.coordinates.n());
-        let joint = tied.map(|tie| -> Result<VibratingJoint, RingError> {
-            let functions = ring.seat_functions(name)?;
-            let functions = functions.expect("a ring that is tied has the functions of its seat");
-            Ok(VibratingJoint::new(tie, &functions, of_ring))
-        });
-        let joint = joint.transpose()?;
+        let seat = functions.map(|functions| Arc::new(VibratingSeat::new(&functions, of_ring)));
+        Ok(RingAlone {
+            held,
+            matrices,
+            factor,
+            seat,
+        })
+    }
+}
+
+impl VibratingRing {
+    fn new(wanted: &RingToVibrate<'_>, alone: Arc<RingAlone>) -> (VibratingRing, Option<VibratingJoint>) {
+        let (of, masses) = wanted.partner.unwrap_or((Partner::AT_REST, [0.0; 5]));
+        let joint = wanted.tie().zip(alone.seat.clone());
+        let joint = joint.map(|(tie, seat)| VibratingJoint::new(tie, seat));
+        let (hold, held) = (wanted.held().0, &alone.held);
         // A tied ring meets no rigid partner.
         let hold = if joint.is_some() { Hold::Free } else { hold };
         let known = match hold {
-            Hold::MeanMotion | Hold::Clamped => motions_of_mount(hold, &held, of),
+            Hold::MeanMotion | Hold::Clamped => motions_of_mount(hold, held, of),
             Hold::Free => [const { None }; 5],
         };
         let mut made = VibratingRing {
@@ -112,17 +153,15 @@ impl VibratingRing {
             partner: [const { None }; 5],
             follows: joint.as_ref().is_some_and(|joint| joint.tie().seat > 0),
             first: 0,
-            held,
-            matrices,
-            factor,
+            alone,
         };
         made.meet(known, of, masses);
         if hold == Hold::MeanMotion {
             let held = (0..6).filter(|&dof| dof == 5 || !of.moves[dof]);
-            let rows = held.filter_map(|dof| made.held.mount.rows.get(dof).cloned());
+            let rows = held.filter_map(|dof| made.alone.held.mount.rows.get(dof).cloned());
             made.constraints = rows.collect();
         }
-        Ok((made, joint))
+        (made, joint)
     }
 
     /// Notes the motions of the partner and the masses that follow them.
@@ -137,12 +176,12 @@ impl VibratingRing {
 
     /// How it is held.
     pub fn held(&self) -> &HeldRing {
-        &self.held
+        &self.alone.held
     }
 
     /// Number of its own coordinates, without those of a body.
     fn n(&self) -> usize {
-        self.held.coordinates.n()
+        self.alone.held.coordinates.n()
     }
 
     /// Held motions as generalised loads.
@@ -167,7 +206,7 @@ impl VibratingRing {
 
     /// Generalised loads of a unit force in each direction of a contact.
     pub fn contact_loads(&self, weights: &NodalWeights) -> [SparseLoad; 2] {
-        let own = self.held.coordinates.reduce_weights(weights);
+        let own = self.alone.held.coordinates.reduce_weights(weights);
         own.map(|load| shifted(load, self.first))
     }
 
@@ -179,7 +218,7 @@ impl VibratingRing {
 
     /// Displacement of its nodes, `[n_nodes][3]` flat.
     pub fn displacement(&self, y: &[f64]) -> Vec<f64> {
-        self.held.coordinates.expand(self.own(y))
+        self.alone.held.coordinates.expand(self.own(y))
     }
 
     /// Its own among the coordinates of its group.
@@ -190,7 +229,10 @@ impl VibratingRing {
     /// What of y^T M y is its own, without its body and the masses of its partner.
     pub fn mass_of(&self, y: &[f64]) -> f64 {
         let own = self.own(y);
-        let moved = self.matrices.mass_product(&self.held.coordinates, own);
+        let moved = self
+            .alone
+            .matrices
+            .mass_product(&self.alone.held.coordinates, own);
         own.iter().zip(moved).map(|(y, m)| y * m).sum()
     }
 }
@@ -219,11 +261,44 @@ impl VibratingRings {
         shift: f64,
         backend: Backend,
     ) -> Result<VibratingRings, RingError> {
-        let made: Result<Vec<_>, RingError> = rings
-            .par_iter()
-            .map(|&ring| VibratingRing::new(ring, shift, backend))
-            .collect();
-        let (mut made, joints): (Vec<VibratingRing>, Vec<Option<VibratingJoint>>) = made?.into_iter().unzip();
+        let mut groups = VibratingRings::of_groups(&[rings.to_vec()], shift, backend)?;
+        Ok(groups.pop().expect("one group"))
+    }
+
+    /// The same of several groups. Rings that are alike are factored once.
+    pub fn of_groups(
+        groups: &[Vec<RingToVibrate<'_>>],
+        shift: f64,
+        backend: Backend,
+    ) -> Result<Vec<VibratingRings>, RingError> {
+        let all: Vec<&RingToVibrate<'_>> = groups.iter().flatten().collect();
+        let first_like = |i: usize| (0..i).find(|&k| all[k].is_like(all[i])).unwrap_or(i);
+        let firsts: Vec<usize> = (0..all.len()).map(first_like).collect();
+        let make = |(i, &first): (usize, &usize)| {
+            let is_first = (i == first).then(|| RingAlone::new(all[i], shift, backend));
+            is_first.transpose().map(|alone| alone.map(Arc::new))
+        };
+        let made: Result<Vec<Option<Arc<RingAlone>>>, RingError> =
+            firsts.par_iter().enumerate().map(make).collect();
+        let made = made?;
+        let alone = |&first: &usize| made[first].clone().expect("the first of its kind is made");
+        let mut alone = firsts.iter().map(alone);
+        let of_group = |rings: &Vec<RingToVibrate<'_>>| {
+            let rings = rings.iter().zip(alone.by_ref());
+            let (made, joints) = rings.map(|(ring, alone)| VibratingRing::new(ring, alone)).unzip();
+            (made, joints)
+        };
+        let parts: Vec<_> = groups.iter().map(of_group).collect();
+        let group = |(parts, rings)| VibratingRings::joined(parts, rings, shift);
+        parts.into_par_iter().zip(groups).map(group).collect()
+    }
+
+    /// A group of rings, one behind the other.
+    fn joined(
+        (mut made, joints): (Vec<VibratingRing>, Vec<Option<VibratingJoint>>),
+        rings: &Vec<RingToVibrate<'_>>,
+        shift: f64,
+    ) -> Result<VibratingRings, RingError> {
         let mut first = 0;
         for ring in &mut made {
             ring.first = first;
@@ -276,8 +351,8 @@ impl VibratingRings {
     /// K Y of a block of vectors, column-major, without what constraints and contacts add.
     pub fn stiffness(&self, y: &[f64], n_vectors: usize) -> Vec<f64> {
         let product = |ring: &VibratingRing, y: &[f64]| {
-            ring.matrices
-                .stiffness_products(&ring.held.coordinates, y, n_vectors)
+            let coordinates = &ring.alone.held.coordinates;
+            ring.alone.matrices.stiffness_products(coordinates, y, n_vectors)
         };
         self.products(y, n_vectors, product, |square| square)
     }
@@ -287,7 +362,7 @@ impl VibratingRings {
         let product = |ring: &VibratingRing, y: &[f64]| -> Vec<f64> {
             let columns = y.chunks_exact((y.len() / n_vectors.max(1)).max(1));
             columns
-                .flat_map(|y| ring.matrices.mass_product(&ring.held.coordinates, y))
+                .flat_map(|y| ring.alone.matrices.mass_product(&ring.alone.held.coordinates, y))
                 .collect()
         };
         self.products(y, n_vectors, product, |_| 1.0)
@@ -306,7 +381,7 @@ impl VibratingRings {
         };
         let n = self.n();
         let of_ring = |ring: &VibratingRing| {
-            let own: Vec<f64> = y.chunks_exact(n).flat_map(|y| ring.own(y)).copied().collect();
+            let own = rows_of(y, n, &(ring.first..ring.first + ring.n()));
             product(ring, &own)
         };
         let products: Vec<Vec<f64>> = self.rings.par_iter().map(of_ring).collect();
@@ -322,9 +397,10 @@ impl VibratingRings {
     /// (K + s M)^-1 of a block of `n_vectors` loads, column-major `[n][n_vectors]`.
     pub fn solve(&self, loads: &mut [f64], n_vectors: usize) {
         match &self.tie {
-            None => self.rings[0].factor.solve(loads, n_vectors),
+            None => self.rings[0].alone.factor.solve(loads, n_vectors),
             Some(tie) => {
-                let factors: Vec<&dyn LinearSolver> = self.rings.iter().map(|ring| &*ring.factor).collect();
+                let factors: Vec<&dyn LinearSolver> =
+                    self.rings.iter().map(|ring| &*ring.alone.factor).collect();
                 tie.solve(&factors, loads);
             }
         }

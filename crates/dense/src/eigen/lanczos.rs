@@ -4,7 +4,7 @@
 //! ```text
 //! Q = block of random numbers, after one application of A = (K + s M)^-1 M
 //! repeat
-//!     V = [V, Q];   W = A Q - V H,   H = V^T M A Q        two passes of Gram-Schmidt in M: V stays orthonormal
+//!     V = [V, Q];   W = A Q - V H,   H = V^T M A Q        twice, by blocks in M: V stays orthonormal
 //!     T = V^T M A V gains the rows and columns H          the projection of A, without use of its band
 //!     W = Q' R;   T S = S Theta                           |A (V s) - theta V s|_M = |R s_last|
 //!     V full? keep the best Ritz vectors V S and go on with Q'          (thick restart)

@@ -7,7 +7,7 @@ mod problem;
 mod symmetric;
 mod whole;
 
-pub use basis::{inner_products, linear_combinations};
+pub use basis::{add_combinations, inner_products, linear_combinations};
 pub use general::{ComplexNumber, ComplexPair, general_eigen};
 pub use lanczos::{LanczosSettings, Searched, lanczos, lowest_pairs};
 pub use problem::{EigenProblem, Eigenpairs};

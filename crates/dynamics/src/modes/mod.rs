@@ -28,6 +28,7 @@
 //! definite even for a free ring, so the rings' own sparse Cholesky factors serve, and contacts and constraints are a
 //! small dense system on top of them. Each ring is factored once, whatever the number of modes.
 
+mod blocks;
 mod columns;
 mod links;
 mod several;
@@ -37,7 +38,6 @@ mod system;
 
 use contact::Side;
 use dense::{EigenProblem, LanczosSettings, Searched, lowest_pairs};
-use rayon::prelude::*;
 use ring::sparse::SparseLoad;
 use ring::{Backend, Partner, RingModel, RingToVibrate, VibratingRings};
 use timer::{Laps, Stopwatch};
@@ -202,11 +202,7 @@ fn grouped(
             RingPlace { group, ring }
         }));
     }
-    let made: Result<Vec<VibratingRings>, ring::RingError> = groups
-        .par_iter()
-        .map(|rings| VibratingRings::new(rings, shift, backend))
-        .collect();
-    Ok((made?, places))
+    Ok((VibratingRings::of_groups(&groups, shift, backend)?, places))
 }
 
 /// Adds the balls of a bearing to the small dofs, what carries its rigid rings and its seat. `shaft` adds the dofs of a

@@ -19,12 +19,13 @@
 use dense::{DenseLu, EigenProblem};
 use rayon::prelude::*;
 
+use super::blocks::{Answer, of_each_group, together};
 use super::columns::{Column, LengthGrowth, LinkTangent, Role, columns};
 use super::small::SmallDofs;
 use crate::error::DynamicsError;
 use ring::VibratingRings;
-use ring::sparse::sparse_dot;
-use ring::vectors::dot;
+use ring::sparse::{SparseLoad, sparse_dot};
+use ring::vectors::{dot, rows_of};
 
 /// The eigenproblem of rings, balls and shaft.
 pub struct VibratingSystem {
@@ -40,12 +41,6 @@ pub struct VibratingSystem {
     /// Orthonormal directions of the constraint forces.
     reactions: Vec<Vec<f64>>,
     shift: f64,
-}
-
-/// X of one group.
-struct Answer {
-    numbers: Vec<usize>,
-    columns: Vec<f64>,
 }
 
 impl VibratingSystem {
@@ -234,50 +229,40 @@ impl VibratingSystem {
         }
     }
 
-    /// What each group makes of its part of a block of vectors, column-major; zero for the small dofs.
-    fn of_groups(&self, x: &[f64], make: impl Fn(&VibratingRings, Vec<f64>) -> Vec<f64> + Sync) -> Vec<f64> {
-        let n = self.n();
-        let of_group = |(i, group): (usize, &VibratingRings)| {
-            let own = x.chunks_exact(n).flat_map(|y| self.part(y, i)).copied();
-            make(group, own.collect())
-        };
-        let parts: Vec<Vec<f64>> = self.groups.par_iter().enumerate().map(of_group).collect();
-        let mut result = vec![0.0; x.len()];
-        let mut start = 0;
-        for (group, part) in self.groups.iter().zip(&parts) {
-            for (y, new) in result.chunks_exact_mut(n).zip(part.chunks_exact(group.n())) {
-                y[start..start + group.n()].copy_from_slice(new);
-            }
-            start += group.n();
-        }
-        result
+    /// A product of the rings alone.
+    fn product(
+        &self,
+        x: &[f64],
+        n_vectors: usize,
+        of: fn(&VibratingRings, &[f64], usize) -> Vec<f64>,
+    ) -> Vec<f64> {
+        let parts = of_each_group(&self.groups, (x, self.n()), |group, y| of(group, &y, n_vectors));
+        together(&self.groups, &parts, [self.n(), n_vectors])
     }
 
-    /// Corrects the groups' answers of one vector for what couples them; `small` are the loads on the small dofs.
-    fn couple(&self, y: &mut [f64], small: &[f64]) {
-        let Some(dense) = &self.dense else { return };
-        let n_columns = self.columns.len();
-        let mut rhs = vec![0.0; n_columns + self.small.n()];
-        let motion = |(j, column): (usize, &Column)| {
-            let ring = column.ring.as_ref();
-            ring.map_or(0.0, |(i, _)| self.motion(j, self.part(y, *i)))
-        };
-        let motions: Vec<f64> = self.columns.iter().enumerate().map(motion).collect();
-        for j in 0..n_columns {
-            rhs[j] = self.law(j).1.iter().map(|&(k, share)| share * motions[k]).sum();
-        }
-        rhs[n_columns..].copy_from_slice(small);
-        dense.solve(&mut rhs, 1);
-        let mut start = 0;
-        for (answer, group) in self.answers.iter().zip(&self.groups) {
-            let part = &mut y[start..start + group.n()];
-            for (&j, x) in answer.numbers.iter().zip(answer.columns.chunks_exact(part.len())) {
-                let force = self.force_unit * rhs[j];
-                part.iter_mut().zip(x).for_each(|(y, x)| *y -= force * x);
+    /// Corrects the groups' answers for what couples them; of `small`, the loads on the small dofs, column-major, the
+    /// answers are returned.
+    fn couple(&self, parts: &mut [Vec<f64>], small: Vec<f64>, n_vectors: usize) -> Vec<f64> {
+        let Some(dense) = &self.dense else { return small };
+        let (n_columns, n_small) = (self.columns.len(), self.small.n());
+        let n = n_columns + n_small;
+        let mut unknowns = vec![0.0; n * n_vectors];
+        for (vector, rhs) in unknowns.chunks_exact_mut(n).enumerate() {
+            let motion = |ring: usize, load: &SparseLoad| {
+                sparse_dot(load, &parts[ring][self.groups[ring].n() * vector..])
+            };
+            let rings = self.columns.iter().map(|column| column.ring.as_ref());
+            let motions = rings.map(|ring| ring.map_or(0.0, |(i, load)| motion(*i, load)));
+            let motions: Vec<f64> = motions.collect();
+            for j in 0..n_columns {
+                rhs[j] = self.law(j).1.iter().map(|&(k, share)| share * motions[k]).sum();
             }
-            start += group.n();
+            rhs[n_columns..].copy_from_slice(&small[n_small * vector..n_small * (vector + 1)]);
         }
-        y[start..].copy_from_slice(&rhs[n_columns..]);
+        dense.solve(&mut unknowns, n_vectors);
+        let answers = parts.par_iter_mut().zip(&self.answers);
+        answers.for_each(|(part, answer)| answer.subtract((&unknowns, n), self.force_unit, part));
+        rows_of(&unknowns, n, &(n_columns..n))
     }
 }
 
@@ -291,7 +276,7 @@ impl EigenProblem for VibratingSystem {
     }
 
     fn stiffness(&self, x: &[f64], n_vectors: usize) -> Vec<f64> {
-        let mut result = self.of_groups(x, |group, y| group.stiffness(&y, n_vectors));
+        let mut result = self.product(x, n_vectors, VibratingRings::stiffness);
         let start = self.start(self.groups.len());
         for (y, result) in x.chunks_exact(self.n()).zip(result.chunks_exact_mut(self.n())) {
             SmallDofs::add_product(&self.small.stiffness, self.small_part(y), &mut result[start..]);
@@ -304,7 +289,7 @@ impl EigenProblem for VibratingSystem {
     }
 
     fn mass(&self, x: &[f64], n_vectors: usize) -> Vec<f64> {
-        let mut result = self.of_groups(x, |group, y| group.mass(&y, n_vectors));
+        let mut result = self.product(x, n_vectors, VibratingRings::mass);
         let start = self.start(self.groups.len());
         for (y, result) in x.chunks_exact(self.n()).zip(result.chunks_exact_mut(self.n())) {
             SmallDofs::add_product(&self.small.mass, self.small_part(y), &mut result[start..]);
@@ -317,12 +302,17 @@ impl EigenProblem for VibratingSystem {
     }
 
     fn solve(&self, b: Vec<f64>, n_vectors: usize) -> Vec<f64> {
-        let mut x = self.of_groups(&b, |group, mut loads| {
+        let (n, start) = (self.n(), self.start(self.groups.len()));
+        let mut parts = of_each_group(&self.groups, (&b, n), |group, mut loads| {
             group.solve(&mut loads, n_vectors);
             loads
         });
-        let columns = x.chunks_exact_mut(self.n()).zip(b.chunks_exact(self.n()));
-        columns.for_each(|(y, loads)| self.couple(y, self.small_part(loads)));
+        let small = rows_of(&b, n, &(start..n));
+        drop(b);
+        let small = self.couple(&mut parts, small, n_vectors);
+        let mut x = together(&self.groups, &parts, [n, n_vectors]);
+        let columns = x.chunks_exact_mut(n).zip(small.chunks_exact((n - start).max(1)));
+        columns.for_each(|(y, small)| y[start..].copy_from_slice(small));
         x
     }
 

@@ -17,22 +17,20 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use body::{SeatFunctions, SeatModes, SeatTie};
-use dense::DenseCholesky;
+use dense::{DenseCholesky, linear_combinations};
 use rayon::prelude::*;
 use solver::LinearSolver;
 
 use crate::error::RingError;
 use crate::mount::MountRows;
 use crate::sparse::fill;
-use crate::vectors::dot;
+use crate::vectors::{dot, rows_of};
 
 /// Functions whose columns are solved at a time.
 const AT_A_TIME: usize = 32;
 
-/// The joint of a vibrating ring with its seat.
-pub(crate) struct VibratingJoint {
-    tie: Arc<SeatTie>,
-    modes: SeatModes,
+/// The seat of a vibrating ring as no body is tied to it; rings that are alike share it.
+pub(crate) struct VibratingSeat {
     /// Phi in the coordinates of the ring.
     mount: MountRows,
     /// Coordinates of the ring.
@@ -41,15 +39,9 @@ pub(crate) struct VibratingJoint {
     softness: Vec<f64>,
 }
 
-impl VibratingJoint {
-    /// The joint of a ring with `n_ring` coordinates, whose K + s M is factored.
-    pub fn new(
-        tie: &Arc<SeatTie>,
-        functions: &SeatFunctions,
-        (ring, n_ring): (&dyn LinearSolver, usize),
-    ) -> VibratingJoint {
-        let modes = tie.modes.clone();
-        let modes = modes.expect("the modes of a body are found before its ring vibrates");
+impl VibratingSeat {
+    /// The seat of a ring with `n_ring` coordinates, whose K + s M is factored.
+    pub fn new(functions: &SeatFunctions, (ring, n_ring): (&dyn LinearSolver, usize)) -> VibratingSeat {
         let mount = MountRows::of_seat(functions);
         let n = mount.len();
         let mut softness = Vec::with_capacity(n * n);
@@ -59,12 +51,29 @@ impl VibratingJoint {
             ring.solve(&mut columns, rows.len());
             softness.extend(columns.chunks_exact(n_ring).flat_map(|y| mount.measure(y)));
         }
-        VibratingJoint {
-            tie: tie.clone(),
-            modes,
+        VibratingSeat {
             mount,
             n_ring,
             softness,
+        }
+    }
+}
+
+/// The joint of a vibrating ring with its seat.
+pub(crate) struct VibratingJoint {
+    tie: Arc<SeatTie>,
+    modes: SeatModes,
+    ring: Arc<VibratingSeat>,
+}
+
+impl VibratingJoint {
+    /// The joint of a ring.
+    pub fn new(tie: &Arc<SeatTie>, ring: Arc<VibratingSeat>) -> VibratingJoint {
+        let modes = tie.modes.clone();
+        VibratingJoint {
+            tie: tie.clone(),
+            modes: modes.expect("the modes of a body are found before its ring vibrates"),
+            ring,
         }
     }
 
@@ -103,7 +112,7 @@ impl VibratingTie {
         for i in 0..modes.n() {
             of_joints.iter().for_each(|own| rows.extend_from_slice(own[i]));
         }
-        let n: usize = joints.iter().map(|joint| joint.mount.len()).sum();
+        let n: usize = joints.iter().map(|joint| joint.ring.mount.len()).sum();
         let with_body = |block: &dyn Fn(&VibratingJoint) -> Vec<f64>, effective: &[f64]| {
             let mut sum = vec![0.0; n * n];
             for (joint, own) in joints.iter().zip(functions_of(&joints)) {
@@ -117,8 +126,8 @@ impl VibratingTie {
             sum.iter_mut().zip(of_body).for_each(|(s, d)| *s += d);
             sum
         };
-        let joint = with_body(&|joint| joint.softness.clone(), &effective);
-        let gram = with_body(&|joint| joint.mount.gram(), &vec![1.0; modes.n()]);
+        let joint = with_body(&|joint| joint.ring.softness.clone(), &effective);
+        let gram = with_body(&|joint| joint.ring.mount.gram(), &vec![1.0; modes.n()]);
         Ok(VibratingTie {
             joint: DenseCholesky::factor(n, &joint).map_err(failed)?,
             gram: DenseCholesky::factor(n, &gram).map_err(failed)?,
@@ -140,7 +149,7 @@ impl VibratingTie {
 
     /// Coordinates of all rings.
     fn n_rings(&self) -> usize {
-        self.joints.iter().map(|joint| joint.n_ring).sum()
+        self.joints.iter().map(|joint| joint.ring.n_ring).sum()
     }
 
     fn n(&self) -> usize {
@@ -168,11 +177,7 @@ impl VibratingTie {
     /// (K + s M)^-1 of a block of loads with the factors of the rings alone.
     pub fn solve(&self, rings: &[&dyn LinearSolver], loads: &mut [f64]) {
         let (n, n_rings) = (self.n(), self.n_rings());
-        let mut forces: Vec<f64> = loads
-            .chunks_exact(n)
-            .flat_map(|y| &y[..n_rings])
-            .copied()
-            .collect();
+        let mut forces = rows_of(loads, n, &(0..n_rings));
         let moved = self.solved(rings, &forces);
         let of_rings = forces.chunks_exact_mut(n_rings).zip(moved.chunks_exact(n_rings));
         for (load, (force, moved)) in loads.chunks_exact_mut(n).zip(of_rings) {
@@ -206,8 +211,7 @@ impl VibratingTie {
         let n_rings = self.n_rings();
         let places: Vec<Range<usize>> = places_of(&self.joints);
         let of_ring = |(ring, place): (&&dyn LinearSolver, &Range<usize>)| {
-            let columns = loads.chunks_exact(n_rings);
-            let mut own: Vec<f64> = columns.flat_map(|y| &y[place.clone()]).copied().collect();
+            let mut own = rows_of(loads, n_rings, place);
             ring.solve(&mut own, loads.len() / n_rings);
             own
         };
@@ -229,6 +233,7 @@ impl VibratingTie {
         for (joint, (place, own)) in self.joints.iter().zip(places) {
             let ring = &mut rings[place];
             joint
+                .ring
                 .mount
                 .loads(&lam[own])
                 .for_each(|(i, f)| ring[i] += factor * f);
@@ -239,7 +244,7 @@ impl VibratingTie {
     fn gap(&self, rings: &[f64], oscillators: &[f64]) -> Vec<f64> {
         let mut gap = Vec::new();
         for (joint, place) in self.joints.iter().zip(places_of(&self.joints)) {
-            let mut own = joint.mount.measure(&rings[place]);
+            let mut own = joint.ring.mount.measure(&rings[place]);
             let of_body = joint.modes.motion(oscillators);
             own.iter_mut().zip(of_body).for_each(|(g, y)| *g -= y);
             gap.extend(own);
@@ -274,12 +279,12 @@ impl VibratingTie {
 
 /// Coordinates of the ring of each joint.
 fn places_of(joints: &[VibratingJoint]) -> Vec<Range<usize>> {
-    one_by_one(joints.iter().map(|joint| joint.n_ring))
+    one_by_one(joints.iter().map(|joint| joint.ring.n_ring))
 }
 
 /// Numbers of the functions of each joint among those of all.
 fn functions_of(joints: &[VibratingJoint]) -> Vec<Range<usize>> {
-    one_by_one(joints.iter().map(|joint| joint.mount.len()))
+    one_by_one(joints.iter().map(|joint| joint.ring.mount.len()))
 }
 
 fn one_by_one(lengths: impl Iterator<Item = usize>) -> Vec<Range<usize>> {
@@ -293,12 +298,14 @@ fn one_by_one(lengths: impl Iterator<Item = usize>) -> Vec<Range<usize>> {
 
 /// D = V diag(1/s) V^T of `n` functions, `[n][n]` flat; rows of V by oscillator.
 fn softness(rows: &[f64], effective: &[f64], n: usize) -> Vec<f64> {
-    let mut softness = vec![0.0; n * n];
-    for (row, s) in rows.chunks_exact(n).zip(effective) {
-        for (to, v) in softness.chunks_exact_mut(n).zip(row) {
-            let by = v / s;
-            to.iter_mut().zip(row).for_each(|(d, w)| *d += by * w);
-        }
+    let n_oscillators = effective.len();
+    if n_oscillators == 0 {
+        return vec![0.0; n * n];
     }
-    softness
+    let over = |j: usize| {
+        let row = rows.iter().skip(j).step_by(n).zip(effective);
+        row.map(|(v, s)| v / s)
+    };
+    let over: Vec<f64> = (0..n).flat_map(over).collect();
+    linear_combinations(n, rows, n_oscillators, &over, n)
 }
