@@ -64,7 +64,7 @@ fn a_spindle_of_finite_elements_carries_its_loads_and_its_weight() {
         of_bearings(&dir, "found", "x_m")[0] - Table::read(&dir, "found/front/shaft.csv").column("x_m")[0];
     let mean = mean_of_seat_along_x(&dir);
     assert!(
-        mean.abs() > 1e-8 && (beside / mean - 1.0).abs() < 0.02,
+        mean.abs() > 1e-8 && (beside / mean - 1.0).abs() < 0.05,
         "{beside:e} {mean:e}"
     );
     let line = Table::read(&dir, "found/shaft.csv");

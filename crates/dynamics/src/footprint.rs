@@ -37,6 +37,16 @@ pub struct Footprint {
     pub semi_axes: Option<[f64; 2]>,
     /// The Hertz ellipse reaches beyond the groove.
     pub truncated: bool,
+    /// Groove angles from rim to rim, rad.
+    pub groove: [f64; 2],
+}
+
+impl Footprint {
+    /// Whether an ellipse reaches beyond the groove, or a contact at this angle, rad, stands beyond its rim.
+    pub fn is_beyond(&self, angle: f64) -> bool {
+        let [low, high] = self.groove;
+        self.truncated || !(low..=high).contains(&angle)
+    }
 }
 
 /// Places all contacts of one ring of a bearing that is mounted so, which stand at `states` with these site forces, and
@@ -77,7 +87,6 @@ fn place_patch(
     loaded: bool,
 ) -> Result<Footprint, DynamicsError> {
     let load = force[0].hypot(force[1]);
-    let is_beyond = loaded && on_groove(&raceway.surface, angle, true) != angle;
     let angle = on_groove(&raceway.surface, angle, loaded);
     let hertz = model.hertz[site.side.index()].semi_axes(load);
     let least = model.contact.least_patch;
@@ -93,7 +102,8 @@ fn place_patch(
     Ok(Footprint {
         weights: patch.weights,
         semi_axes: Some(shape.semi_axes),
-        truncated: shape.truncated || is_beyond,
+        truncated: shape.truncated,
+        groove: raceway.surface.angle_range,
     })
 }
 
@@ -220,6 +230,7 @@ fn place_facet(
         weights,
         semi_axes: None,
         truncated: hertz[0] > raceway.surface.rim_distance(angle),
+        groove: raceway.surface.angle_range,
     })
 }
 

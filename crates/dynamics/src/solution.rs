@@ -383,7 +383,7 @@ fn edge_warnings(
                 let foot = footprints[side.index()].get(*ball);
                 let contact = balls[*ball].contact(side);
                 let reach = contact.semi_axes_m[0] / model.geometry.groove_radius(side);
-                foot.is_some_and(|foot| foot.truncated)
+                foot.is_some_and(|foot| foot.is_beyond(contact.contact_angle_rad))
                     || model.shoulders.is_beyond(side, contact.contact_angle_rad, reach)
             }
         };
