@@ -96,9 +96,9 @@ fn a_ball_that_its_weight_pinches_beyond_the_groove_ends_no_run() {
         "{beyond:?}"
     );
     assert!(
-        said.stderr.contains("edge contact on the inner raceway, balls "),
+        said.stdout.contains("edge contact on the inner raceway, balls "),
         "{}",
-        said.stderr
+        said.stdout
     );
     let x = ["heavy", "light"].map(|name| number(&summary(&dir, name), "/shaft/displacement_m/0"));
     assert!((x[0] / x[1] - 1.0).abs() < 1e-3, "{x:?}");
