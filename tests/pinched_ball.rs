@@ -4,8 +4,9 @@ use crate::first_hour::has_gmsh;
 use crate::several::succeeds;
 use crate::util::Dir;
 use crate::util::tables::{Table, number, summary};
+use crate::wrong_shoulder::REST;
 
-const SCENE: &str = r#"
+const BEARING: &str = r#"
 [bearing]
 bore_diameter = "30 mm"
 outside_diameter = "62 mm"
@@ -23,50 +24,24 @@ balls = "bearing steel"
 
 [contact]
 mode = "patch"
-
-[inner]
-mesh = "inner.msh"
-mesh_unit = "mm"
-support = "clamped"
-
-[inner.section]
-element = "hex8"
-sectors = 52
-groove_elements = 6
-thickness_elements = 2
-shoulder_elements = 1
-grading = 1.2
-
-[outer]
-mesh = "outer.msh"
-mesh_unit = "mm"
-support = "clamped"
-
-[outer.section]
-element = "hex8"
-sectors = 52
-groove_elements = 6
-thickness_elements = 2
-shoulder_elements = 1
-grading = 1.2
-
-[shaft]
-x = "free"
-y = "free"
-z = "free"
-tilt_x = "locked"
-tilt_y = "locked"
-load_point = "0 mm"
-
-[effects.axial_force]
-value = "700 N"
-
-[effects.radial_force]
-value = "900 N"
-direction = "0 deg"
-
-[static]
 "#;
+
+/// A ring and its section.
+const RING: &str = r#"
+[RING]
+mesh = "RING.msh"
+mesh_unit = "mm"
+support = "clamped"
+
+[RING.section]
+element = "hex8"
+sectors = 52
+groove_elements = 6
+thickness_elements = 2
+shoulder_elements = 1
+grading = 1.2
+"#;
+const LOADS: &str = "value = \"700 N\"\n\n[effects.radial_force]\nvalue = \"900 N\"\ndirection = \"0 deg\"";
 const WEIGHT: &str =
     "[effects.gravity]\nacceleration = \"9.81 m/s2\"\ndirection = [0.0, -1.0, 0.0]\n\n[static]";
 
@@ -77,9 +52,11 @@ fn a_ball_that_its_weight_pinches_beyond_the_groove_ends_no_run() {
     if !has_gmsh() {
         return;
     }
-    let dir = Dir::with_scene(SCENE);
-    dir.write("heavy.toml", SCENE.replace("[static]", WEIGHT));
-    dir.write("light.toml", SCENE);
+    let rings = ["inner", "outer"].map(|ring| RING.replace("RING", ring)).concat();
+    let scene = format!("{BEARING}{rings}{}", REST.replace("value = \"2 kN\"", LOADS));
+    let dir = Dir::with_scene(&scene);
+    dir.write("heavy.toml", scene.replace("[static]", WEIGHT));
+    dir.write("light.toml", &scene);
     succeeds(&dir, &["mesh", "light.toml", "--force"]);
     let said = succeeds(&dir, &["run", "heavy.toml", "--out", "heavy"]);
     succeeds(&dir, &["run", "light.toml", "--out", "light"]);

@@ -28,7 +28,7 @@ flexible = false
 flexible = false
 "#;
 
-const REST: &str = r#"
+pub const REST: &str = r#"
 [shaft]
 x = "free"
 y = "free"

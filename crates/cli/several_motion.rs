@@ -32,7 +32,7 @@ use crate::options::Limits;
 use crate::progress::Progress;
 use crate::several::{self, make_folder, require_same_list, say_types, solving, warnings_at};
 use crate::several_files::{close_bearing, create_files, resume_all, resume_tables};
-use crate::several_ledger::check_ledgers;
+use crate::several_ledger::LedgerWatch;
 use crate::several_read::{ReadList, read_list, require_memory_of_all};
 use crate::several_ready::{ready, require_space, say_left_out};
 use crate::several_state;
@@ -91,7 +91,7 @@ pub fn run(
         cache: AssemblyCache::default(),
         newton: 0,
         laps,
-        worst_defect: 0.0,
+        ledgers: LedgerWatch::default(),
         written: WrittenSteps::default(),
         dir,
     };
@@ -152,7 +152,7 @@ pub fn resume(
         newton: restored.newton,
         laps,
         watches: restored.watches,
-        worst_defect: 0.0,
+        ledgers: LedgerWatch::default(),
         written: WrittenSteps::all_of(step),
         dir: &dir,
     };
@@ -191,8 +191,8 @@ struct ListMarch<'a> {
     laps: Laps,
     /// Contacts beyond their limits so far, by bearing.
     watches: Vec<Watch>,
-    /// Largest energy defect of shaft and bearings since the start of this process, over the largest energy.
-    worst_defect: f64,
+    /// What the ledgers have shown since the start of this process.
+    ledgers: LedgerWatch,
     written: WrittenSteps,
     dir: &'a Path,
 }
@@ -233,7 +233,7 @@ impl ListMarch<'_> {
         let findings = SeveralFindings {
             status,
             iterations: self.newton as usize,
-            residual: self.worst_defect,
+            residual: self.ledgers.worst,
             warnings,
             laps: self.laps,
         };
@@ -246,7 +246,7 @@ impl ListMarch<'_> {
             self.state.step - first,
             self.dynamic.step,
             1e3 * seconds / (self.state.step - first).max(1) as f64,
-            match self.worst_defect {
+            match self.ledgers.worst {
                 0.0 => "energy defects are round-off".to_string(),
                 defect => format!("largest energy defect {defect:.1e} of the largest energy"),
             }
@@ -283,8 +283,10 @@ impl ListMarch<'_> {
 
     /// Takes a state whose ledgers close.
     fn accept(&mut self, next: AssemblyState, progress: &Progress) -> Result<(), Failure> {
-        let worst = &mut self.worst_defect;
-        if let Err(failure) = check_ledgers((self.scene, self.dynamic), self.motion, &next, worst, self.dir) {
+        let checked = self
+            .ledgers
+            .check((self.scene, self.dynamic), self.motion, &next, self.dir);
+        if let Err(failure) = checked {
             return Err(instants::failed(self, LAST_GOOD, failure));
         }
         self.state = next;

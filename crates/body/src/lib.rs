@@ -9,7 +9,7 @@
 //! across. The factor is kept for the displacement of the whole body. In motion a body is reduced to these functions
 //! and its own modes up to a frequency ([`BodyModes`]).
 
-pub mod apparent;
+mod apparent;
 mod areas;
 mod carried;
 mod definite;
@@ -31,6 +31,7 @@ mod tie;
 mod turning;
 mod vibration;
 
+pub use apparent::Apparent;
 pub use areas::cylinder_areas;
 pub use carried::{Carried, CarriedInertia, N_SHAFT};
 pub use error::SurroundingError;
@@ -38,7 +39,7 @@ pub use frame::{FrameForms, length};
 pub use joint::BodySeat;
 pub use loads::{BesideRing, BodyLoad, UnitLoads};
 pub use oscillators::{BodyModes, SeatModes, ShaftAtSeat, shaft_motion};
-pub use rows::SeatRows;
+pub use rows::{SeatRows, lane_dot};
 pub use seat::{SeatBasis, SeatCylinder, SeatFunctions, SeatSpace};
 pub use surrounding::Surrounding;
 pub use tie::{SeatTie, SeatTraction, TieConvergence};

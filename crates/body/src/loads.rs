@@ -13,8 +13,6 @@
 //!
 //! Cost: once, a solve for each of up to five unit loads.
 
-use crate::carried::combined;
-
 /// Unit loads: accelerations along x, y and z, the square of a speed, an angular acceleration.
 pub(crate) const N_LOADS: usize = 5;
 
@@ -134,5 +132,9 @@ impl ModalLoads {
 
 /// Vectors of unit loads times their factors, summed.
 fn sum(of_units: &[Vec<f64>], factors: [f64; N_LOADS]) -> Vec<f64> {
-    combined(&of_units.concat(), &factors[..of_units.len()])
+    let mut sum = vec![0.0; of_units.first().map_or(0, Vec::len)];
+    for (unit, factor) in of_units.iter().zip(factors) {
+        sum.iter_mut().zip(unit).for_each(|(s, u)| *s += factor * u);
+    }
+    sum
 }

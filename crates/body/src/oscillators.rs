@@ -6,7 +6,7 @@ use std::sync::Arc;
 use crate::carried::{N_SHAFT, ShaftPlace, combined, dot};
 use crate::frame::FrameForms;
 use crate::loads::ModalLoads;
-use crate::rows::lane_dot;
+use crate::rows::{add_rows, lane_dot};
 
 /// A body as oscillators.
 #[derive(Clone, Debug, PartialEq)]
@@ -211,9 +211,8 @@ impl SeatModes {
     /// Motion of the functions of the seat under oscillators, m; of a rigid body none.
     pub fn motion(&self, oscillators: &[f64]) -> Vec<f64> {
         let mut sum = vec![0.0; self.own.len()];
-        for (row, factor) in self.rows().zip(oscillators) {
-            sum.iter_mut().zip(row).for_each(|(s, r)| *s += factor * r);
-        }
+        let rows: Vec<&[f64]> = self.rows().collect();
+        add_rows(&mut sum, |i| rows[i], &oscillators[..rows.len()]);
         sum
     }
 

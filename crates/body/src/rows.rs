@@ -132,8 +132,24 @@ impl SeatRows {
     }
 }
 
+/// Adds factors times rows of the length of the sum, four in a pass over it.
+pub(crate) fn add_rows<'a>(sum: &mut [f64], row: impl Fn(usize) -> &'a [f64], factors: &[f64]) {
+    let n = sum.len();
+    let (fours, rest) = factors.as_chunks::<4>();
+    for (i, f) in fours.iter().enumerate() {
+        let [a, b, c, d] = [0, 1, 2, 3].map(|k| &row(4 * i + k)[..n]);
+        for (k, s) in sum.iter_mut().enumerate() {
+            *s += (f[0] * a[k] + f[1] * b[k]) + (f[2] * c[k] + f[3] * d[k]);
+        }
+    }
+    for (i, factor) in rest.iter().enumerate() {
+        let row = row(4 * fours.len() + i);
+        sum.iter_mut().zip(row).for_each(|(s, r)| *s += factor * r);
+    }
+}
+
 /// Scalar product, in lanes.
-pub(crate) fn lane_dot(a: &[f64], b: &[f64]) -> f64 {
+pub fn lane_dot(a: &[f64], b: &[f64]) -> f64 {
     let mut lanes = [0.0; LANES];
     let (whole, rest) = a.as_chunks::<LANES>();
     let (others, rest_of_others) = b.as_chunks::<LANES>();

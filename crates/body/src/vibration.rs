@@ -137,9 +137,7 @@ impl HeldSeats<'_> {
             wanted = (2 * wanted).min(most_pairs);
         }
     }
-}
 
-impl HeldSeats<'_> {
     /// What is odd of the body's matrices, for the end of a message.
     fn doubt(&self) -> String {
         let doubts = self

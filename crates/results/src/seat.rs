@@ -109,9 +109,8 @@ pub fn beside_shaft_at_rest(model: &Model, solution: &StaticSolution) -> Option<
 pub fn beside_shaft_in_motion(motion: &Motion<'_>, state: &MotionState) -> Option<[f64; N_SHAFT]> {
     let (_, tie) = on_shaft(motion.model())?;
     let moved = state.rings[ON_SHAFT.index()].as_ref()?.body()?;
-    let load = motion.body_load(state, ON_SHAFT);
-    let traction = motion.tied(ON_SHAFT)?.traction(moved, load)?;
-    Some(at_axis_point(motion.model(), tie, &traction.motion))
+    let seat = motion.tied(ON_SHAFT)?.seat_beside_shaft(moved)?;
+    Some(at_axis_point(motion.model(), tie, &seat))
 }
 
 /// The inner ring on the body of a shaft.

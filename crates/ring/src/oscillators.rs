@@ -112,8 +112,7 @@ impl Oscillators {
     }
 
     /// The same with the inertia of the ring, where a shaft carries the body and the ring has no frame of its own. The
-    /// motion of its seat is a rigid one and
-    /// what that is not, by least squares over the seat.
+    /// motion of its seat is a rigid one and what that is not, by least squares over the seat.
     pub(crate) fn with_ring(mut self, inertia: impl FnOnce() -> RigidInertia) -> Oscillators {
         if self.on_shaft().is_none() {
             return self;
@@ -187,8 +186,8 @@ impl Oscillators {
     }
 
     /// The body at rest under a ring that stands as displaced beside the motion of its shaft, m, `[n_nodes][3]` flat,
-    /// and what acts on it besides. A shaft that carries it moves it, has a
-    /// velocity, and turns with a `speed`, rad/s, against which the body stands.
+    /// and what acts on it besides. A shaft that carries it moves it, has a velocity, and turns with a `speed`, rad/s,
+    /// against which the body stands.
     pub fn at_rest(
         &self,
         elastic: &[f64],
@@ -262,13 +261,25 @@ impl Oscillators {
         };
         let driven: Vec<f64> = self.modes.squares().iter().enumerate().map(driven).collect();
         let forces = self.modes.of_body.forces_on_shaft(&driven);
-        let mut motion = self.modes.motion(x);
-        let along = self.tie.shaft_motion(shares.motion(x)).unwrap_or_default();
-        motion.iter_mut().zip(along).for_each(|(y, r)| *y -= r);
         SeatTraction {
             forces: forces[self.modes.own.clone()].to_vec(),
-            motion,
+            motion: self.beside_shaft(shares, x),
         }
+    }
+
+    /// Motion of the seat of a body on a shaft beside that of the shaft, by functions, m; None of one that stands.
+    pub fn seat_beside_shaft(&self, BodyState([x, ..]): &BodyState) -> Option<Vec<f64>> {
+        self.on_shaft().map(|shares| self.beside_shaft(shares, x))
+    }
+
+    fn beside_shaft(&self, shares: &ShaftAtSeat, oscillators: &[f64]) -> Vec<f64> {
+        let mut motion = self.modes.motion(oscillators);
+        let along = self.tie.shaft_motion(shares.motion(oscillators));
+        motion
+            .iter_mut()
+            .zip(along.unwrap_or_default())
+            .for_each(|(y, r)| *y -= r);
+        motion
     }
 
     /// Kinetic and strain energy, J.
@@ -422,31 +433,22 @@ impl BodyFactor {
     pub fn step(&self, BodyState([x, v, a]): &BodyState, load: &[f64]) -> BodyStep {
         let [mass, damping] = self.scheme.integrator.history(self.scheme.dt);
         let [am, ak] = self.body.damping;
-        let mut increments = Vec::with_capacity(x.len());
-        let mut seat = vec![0.0; self.body.n_functions()];
         let modes = &self.body.modes;
-        for (i, row) in modes.rows().enumerate() {
-            let square = modes.squares()[i];
+        let increment = |(i, square): (usize, &f64)| {
             let inertial = mass[0] * v[i] + mass[1] * a[i];
             let damped = damping[0] * v[i] + damping[1] * a[i];
             let of_state = inertial + (am + ak * square) * damped - square * x[i];
-            let increment = match load.get(i) {
-                Some(load) => (of_state + load) / self.effective[i],
-                None => of_state / self.effective[i],
-            };
-            seat.iter_mut()
-                .zip(row)
-                .for_each(|(y, r)| *y += (x[i] + increment) * r);
-            increments.push(increment);
-        }
-        let shaft = self.body.on_shaft().map(|shares| {
-            let end: Vec<f64> = x.iter().zip(&increments).map(|(x, d)| x + d).collect();
-            [x, &end].map(|at| shares.motion(at).to_vec())
-        });
+            (of_state + load.get(i).unwrap_or(&0.0)) / self.effective[i]
+        };
+        let increments: Vec<f64> = modes.squares().iter().enumerate().map(increment).collect();
+        let end: Vec<f64> = x.iter().zip(&increments).map(|(x, d)| x + d).collect();
+        let shaft = self.body.on_shaft();
         BodyStep {
             increments,
-            seat,
-            shaft: shaft.unwrap_or_default(),
+            seat: modes.motion(&end),
+            shaft: shaft.map_or_else(Default::default, |shares| {
+                [x, &end].map(|at| shares.motion(at).to_vec())
+            }),
         }
     }
 

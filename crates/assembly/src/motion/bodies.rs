@@ -21,6 +21,7 @@
 //! stands move seats, and when these rest the loads go on the oscillators. What the ledger of a bearing says of its
 //! body includes what the others do to it, as imposed work.
 
+use body::lane_dot;
 use dense::DenseCholesky;
 use dynamics::motion::held::{HeldPart, Holding};
 
@@ -35,15 +36,18 @@ const LIMIT: f64 = 1e-10;
 const FLOOR: f64 = 1e-8;
 /// A round that leaves more than this of the change before it no longer contracts.
 const STALLED: f64 = 0.5;
+/// Columns of a product that are added in one pass.
+const COLUMNS: usize = 4;
 
 /// The joints of a body with all rings that it carries, over parts of one size.
 pub struct BodyJoints {
     /// Size of the parts, s.
     dt: f64,
-    /// (A + D)^-1 times D between different seats, over the functions of all, column-major.
-    answers: Vec<f64>,
-    /// D_st, `[n_s][n_t]` flat, by the bearings s and t.
-    softness: Vec<Vec<Vec<f64>>>,
+    /// (A + D)^-1 times D between different seats, over the functions of all, column-major, then columns of zeros; of
+    /// single precision: what it leaves of a change, the next round takes.
+    answers: Vec<f32>,
+    /// D_st, `[n_s][n_t]` flat, by the bearings s < t; it is D_ts transposed.
+    softness: Vec<(usize, usize, Vec<f64>)>,
     /// Whether a shaft carries the body.
     on_shaft: bool,
 }
@@ -101,10 +105,17 @@ impl BodyJoints {
         let joints = DenseCholesky::factor(n, &joints);
         let joints = joints.map_err(|source| AssemblyError::Matrix { source })?;
         joints.solve(&mut between, n);
+        let mut answers: Vec<f32> = between.into_iter().map(|answer| answer as f32).collect();
+        answers.resize(n * n.next_multiple_of(COLUMNS), 0.0);
+        let rows = softness.into_iter().enumerate();
+        let pairs = rows.flat_map(|(s, row)| {
+            let pairs = row.into_iter().enumerate().skip(s + 1);
+            pairs.map(move |(t, d)| (s, t, d))
+        });
         Ok(BodyJoints {
             dt: parts[0].dt(),
-            answers: between,
-            softness,
+            answers,
+            softness: pairs.collect(),
             on_shaft: parts[bearings[0]]
                 .body(*side)
                 .is_some_and(|body| body.on_shaft().is_some()),
@@ -112,14 +123,35 @@ impl BodyJoints {
     }
 
     /// What changes of the forces that others feel ask of all joints, N, over the functions of all seats.
-    fn correction(&self, changes: &[f64]) -> Vec<f64> {
-        let mut correction = vec![0.0; changes.len()];
-        let columns = self.answers.chunks_exact(changes.len().max(1));
-        for (column, change) in columns.zip(changes) {
-            let of_all = correction.iter_mut().zip(column);
-            of_all.for_each(|(lam, by)| *lam -= change * by);
+    fn correction(&self, changes: &[f64]) -> Vec<f32> {
+        let n = changes.len();
+        let mut correction = vec![0.0; n];
+        let columns = self.answers.chunks_exact((COLUMNS * n).max(1));
+        for (columns, changes) in columns.zip(changes.chunks(COLUMNS)) {
+            let by = |k: usize| changes.get(k).map_or(0.0, |change| *change as f32);
+            let by = [by(0), by(1), by(2), by(3)];
+            let column = |k: usize| &columns[n * k..n * (k + 1)];
+            let [a, b, c, d] = [column(0), column(1), column(2), column(3)];
+            for (i, lam) in correction.iter_mut().enumerate() {
+                *lam -= (by[0] * a[i] + by[1] * b[i]) + (by[2] * c[i] + by[3] * d[i]);
+            }
         }
         correction
+    }
+
+    /// Motion of each seat by the forces of the joints of the others, m.
+    fn motions(&self, forces: &[Vec<f64>]) -> Vec<Vec<f64>> {
+        let mut motions: Vec<Vec<f64>> = forces.iter().map(|lam| vec![0.0; lam.len()]).collect();
+        for (s, t, softness) in &self.softness {
+            let (before, from) = motions.split_at_mut(*t);
+            let (of_s, of_t) = (&mut before[*s], &mut from[0]);
+            let rows = softness.chunks_exact(of_t.len().max(1)).zip(&forces[*s]);
+            for ((row, force), y) in rows.zip(of_s) {
+                *y -= lane_dot(row, &forces[*t]);
+                of_t.iter_mut().zip(row).for_each(|(y, d)| *y -= force * d);
+            }
+        }
+        motions
     }
 }
 
@@ -206,7 +238,7 @@ impl SharedLoad<'_> {
         self.change = change;
         let corrections = self.joints.correction(&changes);
         let corrected = found.iter_mut().flatten().zip(corrections);
-        corrected.for_each(|(lam, correction)| *lam += correction);
+        corrected.for_each(|(lam, correction)| *lam += f64::from(correction));
         self.told = found;
         match self.joints.on_shaft {
             true => self.load(parts),
@@ -218,16 +250,7 @@ impl SharedLoad<'_> {
     /// Moves the seat of each bearing by what the joints of the others do to it.
     fn move_seats(&mut self, parts: &mut [HeldPart<'_>]) {
         let HousedTogether { side, bearings, .. } = self.housed;
-        for (s, &i) in bearings.iter().enumerate() {
-            let mut motion = vec![0.0; self.told[s].len()];
-            let others = self.joints.softness.iter().zip(&self.told).enumerate();
-            for (_, (softness, lam)) in others.filter(|(t, _)| *t != s) {
-                // D_st is D_ts transposed.
-                let columns = softness[s].chunks_exact(motion.len().max(1)).zip(lam);
-                columns.for_each(|(column, force)| {
-                    motion.iter_mut().zip(column).for_each(|(y, d)| *y -= force * d)
-                });
-            }
+        for (&i, motion) in bearings.iter().zip(self.joints.motions(&self.told)) {
             parts[i].move_seat(*side, &motion);
         }
         self.is_ahead = true;

@@ -4,11 +4,17 @@ use std::sync::Arc;
 
 use body::{BesideRing, BodyLoad, SeatTie, SeatTraction};
 
+use super::vibration::coarse;
 use super::*;
 
 /// Displacement of all nodes and motion of the seat under a load alone.
 fn under(body: Surrounding, load: BodyLoad) -> [Vec<f64>; 2] {
     let tie = SeatTie::to_seat(Arc::new(body), 0);
+    alone(&tie, load)
+}
+
+/// The same where a joint carries nothing.
+fn alone(tie: &SeatTie, load: BodyLoad) -> [Vec<f64>; 2] {
     let free = vec![0.0; tie.own().len()];
     let acting = BesideRing {
         load: Some(load),
@@ -201,13 +207,7 @@ fn oscillators_stand_under_a_load_as_the_body_at_rest() {
         rate: 4.0,
     };
     for is_carried in [false, true] {
-        let body = made(
-            tube(ElementKind::Hex8, 24, [2, 2]),
-            material(0.3),
-            "outside",
-            basis(3, 1),
-        )
-        .unwrap();
+        let body = coarse();
         let body = match is_carried {
             true => body.on_shaft(&[0.01]).unwrap(),
             false => body,
@@ -216,18 +216,8 @@ fn oscillators_stand_under_a_load_as_the_body_at_rest() {
         let modes = Arc::new(body.modes(150e3).unwrap());
         let tie = SeatTie::to_seat(body.clone(), 0).in_motion(modes.clone());
         let at = tie.at_rest_under(Some(load));
-        let acting = BesideRing {
-            load: Some(load),
-            ..BesideRing::default()
-        };
-        let expected = tie.moved_by(acting).unwrap();
+        let [whole, expected] = alone(&tie, load);
         let seat = off(&modes.seat_motion(&at), &expected);
-        let free = vec![0.0; expected.len()];
-        let nothing = SeatTraction {
-            forces: free.clone(),
-            motion: free,
-        };
-        let whole = tie.displacement(&nothing, acting).unwrap();
         let shown = off(&tie.moved(&at, Some(load)).unwrap(), &whole);
         let reduced = off(&tie.moved(&at, None).unwrap(), &whole);
         println!("seat {seat:e}, whole {shown:e}, by modes alone {reduced:e}");

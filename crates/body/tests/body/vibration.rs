@@ -3,12 +3,18 @@
 use std::f64::consts::PI;
 use std::sync::Arc;
 
-use body::SeatTie;
+use body::{SeatTie, Surrounding};
 use fem::Material;
 use mesh::{ElementKind, Mesh};
 
 use super::matrices::{of_matrix, write_matrix};
 use super::{INNER, OUTER, WIDTH, basis, made, material, tube};
+
+/// A coarse tube of steel, held outside.
+pub fn coarse() -> Surrounding {
+    let mesh = tube(ElementKind::Hex8, 24, [2, 2]);
+    made(mesh, material(0.3), "outside", basis(3, 1)).unwrap()
+}
 
 /// The whole body with all its dofs: no reduction.
 struct Whole {
@@ -90,13 +96,7 @@ fn the_reduced_body_has_the_frequencies_of_the_whole_one() {
 /// Wrong: a load at rest would move the reduced body otherwise than the exact one.
 #[test]
 fn the_reduced_body_is_exact_at_rest() {
-    let body = made(
-        tube(ElementKind::Hex8, 24, [2, 2]),
-        material(0.3),
-        "outside",
-        basis(3, 1),
-    )
-    .unwrap();
+    let body = coarse();
     let modes = body.modes(150e3).unwrap();
     let n = body.n_functions();
     assert!(modes.n_fixed > 0);

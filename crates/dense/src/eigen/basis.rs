@@ -1,9 +1,11 @@
 //! A basis that is orthonormal in the inner product of M, and products of tall matrices. All sums run in one order.
 
 use faer::linalg::matmul::matmul;
-use faer::{Accum, MatMut, MatRef, Par};
+use faer::linalg::triangular_solve::solve_lower_triangular_in_place;
+use faer::{Accum, Mat, MatMut, MatRef, Par};
 
 use super::problem::{EigenProblem, dot};
+use crate::factors::DenseCholesky;
 
 /// Length of a vector after orthogonalisation, over that before, below which nothing new is left in it.
 const DEPENDENT: f64 = 1e-11;
@@ -154,31 +156,31 @@ fn orthonormal(n: usize, block: Vec<f64>, mass: Vec<f64>, lengths: &[f64]) -> Or
 fn cholesky_qr(n: usize, block: &[f64], mass: &[f64], lengths: &[f64]) -> Option<OrthonormalBlock> {
     let width = lengths.len();
     let gram = inner_products(n, block, width, mass, width);
-    let mut factor = vec![0.0; width * width];
-    for j in 0..width {
-        for i in 0..=j {
-            let value = 0.5 * (gram[width * j + i] + gram[width * i + j]);
-            let [of_i, of_j] = [i, j].map(|k| &factor[width * k..width * k + i]);
-            let left = value - dot(of_i, of_j);
-            if i < j {
-                factor[width * j + i] = left / factor[(width + 1) * i];
-                continue;
-            }
-            // Written so that a NaN is refused too.
-            if !(left > INDEPENDENT * value && left.sqrt() > DEPENDENT * lengths[j]) {
-                return None;
-            }
-            factor[(width + 1) * j] = left.sqrt();
-        }
+    let value = |i: usize, j: usize| 0.5 * (gram[width * j + i] + gram[width * i + j]);
+    let symmetric: Vec<f64> = (0..width * width).map(|k| value(k / width, k % width)).collect();
+    let lower = DenseCholesky::factor(width, &symmetric).ok()?.into_lower();
+    // Written so that a NaN is refused too.
+    let is_new = |j: usize| {
+        let left = lower[(j, j)].powi(2);
+        left > INDEPENDENT * value(j, j) && left.sqrt() > DEPENDENT * lengths[j]
+    };
+    if !(0..width).all(is_new) {
+        return None;
     }
-    let mut inverse = vec![0.0; width * width];
-    for j in 0..width {
-        inverse[(width + 1) * j] = 1.0 / factor[(width + 1) * j];
-        for i in (0..j).rev() {
-            let known = (i + 1..=j).map(|k| factor[width * k + i] * inverse[width * j + k]);
-            inverse[width * j + i] = -known.sum::<f64>() / factor[(width + 1) * i];
-        }
-    }
+    let mut inverse = Mat::<f64>::identity(width, width);
+    solve_lower_triangular_in_place(lower.as_ref(), inverse.as_mut(), Par::Seq);
+    // R and its inverse are transposes of L and its own.
+    let upper = |of: &Mat<f64>| -> Vec<f64> {
+        let entry = |k: usize| {
+            if k % width <= k / width {
+                of[(k / width, k % width)]
+            } else {
+                0.0
+            }
+        };
+        (0..width * width).map(entry).collect()
+    };
+    let [factor, inverse] = [lower, inverse].map(|of| upper(&of));
     let [vectors, mass] = [block, mass].map(|of| linear_combinations(n, of, width, &inverse, width));
     Some(OrthonormalBlock {
         vectors,

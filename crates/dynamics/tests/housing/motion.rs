@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use body::SeatTie;
+use contact::Side;
 use dynamics::kinematics::Speed;
 use dynamics::motion::{Integrator, Motion, MotionSettings, MotionState, StepCache};
 use dynamics::{Backend, Hold, Model, RingModel, ShaftDof};
@@ -23,8 +24,8 @@ pub fn on_moving_body(mesh: mesh::Mesh, n: usize, below: f64) -> RingModel {
     tied(SeatTie::to_seat(Arc::new(body), 0).in_motion(modes))
 }
 
-/// A bearing whose shaft has a mass, and that begins with a blow of 0.05 m/s across and 0.03 m/s along it.
-fn struck(outer: RingModel, backend: Backend) -> Model {
+/// A bearing whose shaft has a mass and is free to be struck, across and along.
+pub fn struck(outer: RingModel, backend: Backend) -> Model {
     let mut model = bearing(outer, backend);
     model.shaft_mass = 0.5;
     model.shaft[0] = ShaftDof::Free;
@@ -36,7 +37,7 @@ fn settings() -> MotionSettings {
     MotionSettings::conserving(STEP, Speed::constant(100.0))
 }
 
-/// States of the motion after the blow, every fifth of `n` steps.
+/// States of the motion after a blow of 0.05 m/s across and 0.03 m/s along the shaft, every fifth of `n` steps.
 fn course(model: &Model, settings: MotionSettings, n: usize) -> Vec<MotionState> {
     let motion = Motion::new(model, settings).unwrap();
     let mut state = motion.start(&equilibrium(model));
@@ -45,11 +46,18 @@ fn course(model: &Model, settings: MotionSettings, n: usize) -> Vec<MotionState>
     every_fifth(&motion, motion.with_accelerations(state).unwrap(), n)
 }
 
-/// Displacements of the shaft and forces on the outer ring over a course.
-fn histories(states: &[MotionState]) -> [Vec<f64>; 2] {
+/// Displacements of the shaft and forces on a ring over a course.
+pub fn histories_of(states: &[MotionState], side: Side) -> [Vec<f64>; 2] {
     let shaft = states.iter().flat_map(|state| state.shaft[..3].to_vec());
-    let outer = states.iter().flat_map(|s| s.forces.iter().skip(1).step_by(2));
-    [shaft.collect(), outer.flatten().copied().collect()]
+    let ring = states
+        .iter()
+        .flat_map(|s| s.forces.iter().skip(side.index()).step_by(2));
+    [shaft.collect(), ring.flatten().copied().collect()]
+}
+
+/// The same of the outer ring.
+fn histories(states: &[MotionState]) -> [Vec<f64>; 2] {
+    histories_of(states, Side::Outer)
 }
 
 /// Wrong: the joint would hold a moving ring more or less than the mean motion when it ties nothing else.

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use body::{BesideRing, SeatTie};
+use body::SeatTie;
 use contact::Side;
 use dynamics::kinematics::Speed;
 use dynamics::modes::bearing_modes;
@@ -254,36 +254,7 @@ fn an_equilibrium_stays() {
     let mut model = free(on_shaft(hollow_shaft(2).0, [6, 2], Some(20e3)), Backend::Auto);
     model.shaft[3] = ShaftDof::Prescribed(0.0);
     model.shaft[4] = ShaftDof::Prescribed(0.0);
-    let rest = equilibrium(&model);
-    let motion = Motion::new(&model, MotionSettings::conserving(STEP, Speed::constant(0.0))).unwrap();
-    let (mut state, mut cache) = (motion.start(&rest), StepCache::default());
-    for _ in 0..20 {
-        state = motion.step(&state, &mut cache).unwrap().0;
-    }
-    let off = difference(&state.shaft, &rest.displacements.shaft);
-    assert!(off < 1e-7, "{off:e}");
-    assert!(state.ledger.kinetic.iter().sum::<f64>() < 1e-12 * state.ledger.strain[0]);
-    // The joint carries in motion what it carries at rest.
-    let tie = model.ring(Side::Inner).unwrap().tie.clone().unwrap();
-    let functions = model
-        .ring(Side::Inner)
-        .unwrap()
-        .seat_functions("inner")
-        .unwrap()
-        .unwrap();
-    let expected = tie
-        .traction(
-            &functions,
-            rest.elastic[0].as_ref().unwrap(),
-            BesideRing::default(),
-        )
-        .unwrap();
-    let moving = motion.tied(Side::Inner).unwrap();
-    let found = moving
-        .traction(state.rings[0].as_ref().unwrap().body().unwrap(), None)
-        .unwrap();
-    assert!(difference(&found.forces, &expected.forces) < 1e-5);
-    assert!(difference(&found.motion, &expected.motion) < 1e-6);
+    super::loads::assert_stays(&model, Side::Inner);
 }
 
 /// Wrong: solvers or threads would move it otherwise.

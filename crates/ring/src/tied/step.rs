@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use body::{N_SHAFT, SeatModes, length};
+use body::{N_SHAFT, SeatModes, lane_dot, length};
 use dense::{DenseCholesky, DenseError};
 use timer::Laps;
 
@@ -11,7 +11,7 @@ use crate::state::{BodyState, RingState};
 use crate::step::{
     BodyAlone, ElasticStep, End, Feet, Known, KnownLoad, PortAnswer, PortForces, Settling, StepFactor,
 };
-use crate::vectors::dot;
+use crate::vectors::sum;
 
 /// Factors of ring and joint at one step size.
 pub(super) struct TiedFactor {
@@ -53,7 +53,7 @@ impl TiedShaft {
             for j in 0..=i {
                 let [e, x] =
                     [(&body.of_seat, i), (&solved, j)].map(|(of, k)| &of[width * k..width * (k + 1)]);
-                let value = own[n * i + j] - dot(e, x);
+                let value = own[n * i + j] - lane_dot(e, x);
                 (own[n * i + j], own[n * j + i]) = (value, value);
             }
         }
@@ -182,14 +182,14 @@ impl TiedStep<'_> {
         let mut compliance = vec![0.0; all * all];
         for i in 0..ports {
             for j in 0..=i {
-                let value = row(i)[j] - dot(rows[i], solved[j]);
+                let value = row(i)[j] - lane_dot(rows[i], solved[j]);
                 (compliance[all * i + j], compliance[all * j + i]) = (value, value);
             }
         }
         for k in 0..shaft.n {
             let by_shaft = &shaft.joint[n * k..n * (k + 1)];
             for (i, row) in rows.iter().enumerate() {
-                let value = dot(row, by_shaft);
+                let value = lane_dot(row, by_shaft);
                 (compliance[all * i + ports + k], compliance[all * (ports + k) + i]) = (value, value);
             }
             let own = &shaft.own[shaft.n * k..shaft.n * (k + 1)];
@@ -213,12 +213,12 @@ impl TiedStep<'_> {
         let mut known: Vec<f64> = gaps.map(|(y, g)| y - g).collect();
         self.factor.joint.solve(&mut known, 1);
         let rows = ring.predicted.iter().zip(self.coupling.chunks_exact(n));
-        self.answer.predicted = rows.map(|(p, row)| p + dot(row, &known)).collect();
+        self.answer.predicted = rows.map(|(p, row)| p + lane_dot(row, &known)).collect();
         let of_seat = self.factor.shaft.of_seat.chunks_exact(n);
         let shaft = self.body.shaft[1].iter().zip(of_seat);
         self.answer
             .predicted
-            .extend(shaft.map(|(q, e)| q - dot(e, &known)));
+            .extend(shaft.map(|(q, e)| q - lane_dot(e, &known)));
         self.known = known;
     }
 
@@ -230,13 +230,13 @@ impl TiedStep<'_> {
             self.alone.clone_from(&self.body.shaft[1]);
             return;
         };
-        let mut sum = summed(&frame.load, &self.of_body);
+        let mut load = summed(&frame.load, &self.of_body);
         let shaft_at_end = |load: &[f64]| factor.step(self.old, load).shaft[1].clone();
-        let unloaded = shaft_at_end(&sum);
-        sum.iter_mut().zip(&self.others).for_each(|(sum, p)| *sum += p);
-        let alone = shaft_at_end(&sum);
-        sum.iter_mut().zip(&frame.of_ring).for_each(|(sum, p)| *sum += p);
-        self.body = factor.step(self.old, &sum);
+        let unloaded = shaft_at_end(&load);
+        load.iter_mut().zip(&self.others).for_each(|(sum, p)| *sum += p);
+        let alone = shaft_at_end(&load);
+        load.iter_mut().zip(&frame.of_ring).for_each(|(sum, p)| *sum += p);
+        self.body = factor.step(self.old, &load);
         (self.unloaded, self.alone) = (unloaded, alone);
     }
 
@@ -330,7 +330,7 @@ impl ElasticStep for TiedStep<'_> {
         let modes = &self.factor.body.body.modes;
         let shaft = modes.on_shaft.as_ref()?;
         let lam = self.joint(forces);
-        let rigid = modes.rows().take(N_SHAFT).map(|row| dot(row, &lam));
+        let rigid = modes.rows().take(N_SHAFT).map(|row| lane_dot(row, &lam));
         Some(shaft.resultant(&rigid.collect::<Vec<_>>()))
     }
 
@@ -390,7 +390,7 @@ fn summed(a: &[f64], b: &[f64]) -> Vec<f64> {
     match (a, b) {
         (a, []) => a.to_vec(),
         ([], b) => b.to_vec(),
-        (a, b) => a.iter().zip(b).map(|(a, b)| a + b).collect(),
+        (a, b) => sum(a, b),
     }
 }
 
