@@ -16,7 +16,7 @@ use results::snapshot::Snapshot;
 use results::summary::{READ, TOTAL};
 use scene::{ModeBody, Modes, SeveralScene};
 
-use crate::modes::{beyond, report, require_one_process, too_few, without_stiffness};
+use crate::modes::{beyond, loose_balls, report, require_one_process, too_few, without_stiffness};
 use crate::options::Limits;
 use crate::progress::Progress;
 use crate::several::{make_folder, placed, say_types, solving, warnings_at, words_of};
@@ -127,6 +127,7 @@ fn warnings_of(scene: &SeveralScene, found: &ModesOfSeveral, wanted: &Modes) -> 
     for body in scene
         .bearings
         .iter()
+    warnings.extend(loose_balls(NAME, found.loose_balls));
         .flat_map(|bearing| bearing.scene.bodies.iter().flatten())
     {
         let warning = beyond(body, NAME, highest).filter(|warning| !warnings.contains(warning));

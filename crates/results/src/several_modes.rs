@@ -64,3 +64,4 @@ pub fn set_of_several(found: &ModesOfSeveral, of: impl Fn(&ModeOfSeveral) -> &Mo
         laps: found.laps.clone(),
     }
 }
+        loose_balls: found.loose_balls,
