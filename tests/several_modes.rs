@@ -1,6 +1,6 @@
 //! Natural modes of several bearings on one shaft through the whole program: tables, step files, figures.
 
-use crate::several::{PAIR, flexible_pair, pair, succeeds};
+use crate::several::{PAIR, flexible_pair, pair, succeeds, with_type};
 use crate::util::tables::{Table, number, summary};
 use crate::util::{Dir, assert_close};
 

@@ -94,7 +94,7 @@ fn finished(state: Option<SeatState>, dir: &Path) -> Result<Option<SeatSummary>,
 }
 
 /// The ring on the shaft.
-const ON_SHAFT: Side = Side::BOTH[0];
+pub(crate) const ON_SHAFT: Side = Side::BOTH[0];
 
 /// Mean motion of the inner ring's seat beside the rigid motion of the shaft whose body it sits on, at the axis point,
 /// in the frame of the bearing, m and rad; None where the inner ring is on no such body. Seats were resolved before.
