@@ -1,10 +1,12 @@
 //! Inner rings on elastic shafts through the whole program: files, balance, bits, refusals.
 
+use std::collections::BTreeSet;
+
 use checkpoint::{read_mesh, read_step, step_file_name};
 use mesh::{MshFormat, Overwrite, read_body_msh, write_msh};
 
 use crate::housing::{assert_moves_and_goes_on, delivered};
-use crate::shared_housing::in_motion;
+use crate::shared_housing::{in_motion, without_analysis};
 use crate::util::Dir;
 use crate::util::lockstep::{assert_same_run, copy};
 use crate::util::tables::{Table, number, summary};
@@ -72,6 +74,68 @@ fn a_spindle_of_finite_elements_carries_its_loads_and_its_weight() {
     let plot = dir.raceway(&["plot", "found/front"]);
     assert_eq!(plot.code, Some(0), "{}", plot.stderr);
     assert!(dir.path("found/front/figures/seat_pressure_inner.svg").exists());
+}
+
+/// Wrong: modes of a list on an elastic shaft would be shown as the motion of its fixed end, in the frame of another
+/// bearing, or with a line that is not where the rings are. Rings are turned both ways, and follow the sections at
+/// which they sit; few functions, so to a few per cent.
+#[test]
+fn the_line_of_a_mode_goes_through_the_sections_of_an_elastic_shaft() {
+    let dir = delivered();
+    let scene = without_analysis(&dir, SCENE);
+    dir.write("modes.toml", format!("{scene}\n[modes]\nnumber = 2\n"));
+    let run = dir.raceway(&[&["run", "modes.toml", "--out", "found"][..], &FEW].concat());
+    assert_eq!(run.code, Some(0), "{}", run.stderr);
+    let table = Table::read(&dir, "found/mode_shaft.csv");
+    let [modes, z, x, y, tilt] =
+        ["mode", "position_m", "x", "y", "tilt_y_per_m"].map(|name| table.column(name).to_vec());
+    let rows: Vec<usize> = (0..modes.len()).filter(|&i| modes[i] == 2.0).collect();
+    assert!(rows.len() > 20, "{} places", rows.len());
+    let (first, last) = (rows[0], rows[rows.len() - 1]);
+    assert!(z[first] < 0.01 && z[last] > 0.2, "{} {}", z[first], z[last]);
+    assert!(
+        (tilt[last] / tilt[first] - 1.0).abs() > 0.05,
+        "it bends: {} {}",
+        tilt[first],
+        tilt[last]
+    );
+    let at = |line: &[f64], place: f64| {
+        let after = *rows.iter().find(|&&i| z[i] > place).unwrap();
+        let share = (place - z[after - 1]) / (z[after] - z[after - 1]);
+        (1.0 - share) * line[after - 1] + share * line[after]
+    };
+    let most = rows.iter().map(|&i| x[i].hypot(y[i])).fold(0.0, f64::max);
+    for (name, place, turn) in [("front", 0.06, 1.0), ("rear", 0.13, -1.0)] {
+        let folder = dir.path(&format!("found/{name}"));
+        let grid = read_mesh(&folder).unwrap();
+        let shape = read_step(&folder.join(step_file_name(2))).unwrap();
+        let ring = (0..grid.body.len()).filter(|&cell| grid.body[cell] == 0);
+        let nodes: BTreeSet<usize> = ring.flat_map(|cell| grid.cell(cell)).collect();
+        let mean = |c: usize| {
+            let sum: f64 = nodes.iter().map(|&n| 1e3 * shape.points.displacement[n][c]).sum();
+            sum / nodes.len() as f64
+        };
+        for (found, expected) in [(mean(0), at(&x, place)), (turn * mean(1), at(&y, place))] {
+            assert!(
+                (found - expected).abs() < 0.03 * most,
+                "{name}: {found} {expected} of {most}"
+            );
+        }
+    }
+    // A reader of the other bearing learns where the shaft is.
+    let line = "body       \"spindle\" is in the files of ../front; raceway export of the folder above, --to vtu, has \
+                all bearings with their bodies";
+    let info = dir.raceway(&["info", "found/rear"]);
+    assert!(info.stdout.contains(line), "{}", info.stdout);
+    assert!(!dir.raceway(&["info", "found/front"]).stdout.contains("body  "));
+    assert!(
+        run.stdout
+            .contains("bearing \"rear\": body \"spindle\" is in the files of ../front")
+    );
+    assert_eq!(
+        summary(&dir, "found/rear")["bodies_shown_in"]["spindle"],
+        "../front"
+    );
 }
 
 /// Mean of the motion along x of the front seat beside the shaft, by Simpson's rule across, m.

@@ -46,10 +46,12 @@ const SPRUNG: &str = "[[body]]\nname = \"springs\"\nstiffness = \"K.mtx\"\nnodes
                       [[body.seat]]\nring = \"outer\"\n\
                       reference_node = 4711\n";
 
-fn run(dir: &Dir, name: &str, text: String) {
+/// Runs a scene, and returns what the screen shows.
+fn run(dir: &Dir, name: &str, text: String) -> String {
     dir.write(&format!("{name}.toml"), text);
     let run = dir.raceway(&["run", &format!("{name}.toml"), "--out", name]);
     assert_eq!(run.code, Some(0), "{}", run.stderr);
+    run.stdout
 }
 
 /// If this failed, a ring on springs would not stand where they do. Closed form: as in its mean motion, which is the
@@ -67,7 +69,10 @@ fn a_ring_on_springs_is_moved_by_the_load_over_their_stiffness() {
         let held = held.replace("support = \"body\" ", "support = \"mean_motion\" ");
         let [held_run, sprung_run] = ["held", "sprung"].map(|kind| format!("{kind}_{name}"));
         run(&dir, &held_run, held);
-        run(&dir, &sprung_run, scene(&dir, SPRUNG, [load, "[static]"]));
+        let said = run(&dir, &sprung_run, scene(&dir, SPRUNG, [load, "[static]"]));
+        let line =
+            "seat of the outer ring in body \"springs\": it moves as a rigid one, with its reference node";
+        assert!(said.lines().any(|said| said == line), "{said}");
         let of = |folder: &str| Table::read(&dir, &format!("{folder}/shaft.csv"));
         let (held, sprung) = (of(&held_run), of(&sprung_run));
         let expected = force / spring;
@@ -83,6 +88,7 @@ fn a_ring_on_springs_is_moved_by_the_load_over_their_stiffness() {
         }
         let told = summary(&dir, &sprung_run);
         assert_eq!(number(&told, "/seat/functions"), 6.0);
+        assert!(told["seat"]["energy_share_last_orders"].is_null());
         assert!(
             told.pointer("/seat/largest_pressure_pa")
                 .is_some_and(serde_json::Value::is_null)

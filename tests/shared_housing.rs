@@ -29,10 +29,10 @@ fn a_pair_in_one_housing_gives_more_than_in_a_stiff_one() {
         let run = dir.raceway(&[&["run", scene, "--out", out], more].concat());
         assert_eq!(run.code, Some(0), "{}", run.stderr);
         let line = Table::read(&dir, &format!("{out}/shaft.csv"));
-        line.column("x_m")[0]
+        (line.column("x_m")[0], run.stdout)
     };
-    let stiff = run("scenes/7010c_spindle_pair.toml", "stiff", &[]);
-    let found = run(SCENE, "found", &FEW);
+    let (stiff, _) = run("scenes/7010c_spindle_pair.toml", "stiff", &[]);
+    let (found, said) = run(SCENE, "found", &FEW);
     assert!(found > 1.1 * stiff && found < 1.5 * stiff, "{found} {stiff}");
     let table = dir.text("found/bearings.csv");
     let at = table
@@ -49,7 +49,12 @@ fn a_pair_in_one_housing_gives_more_than_in_a_stiff_one() {
         mesh.body.contains(&3)
     };
     assert!(has_body("front") && !has_body("rear"));
+    let where_it_is = "bearing \"rear\": body \"housing\" is in the files of ../front; raceway export";
+    assert_eq!(said.matches(where_it_is).count(), 1, "{said}");
     for name in ["front", "rear"] {
+        let line = format!("bearing {name:?}: seat of the outer ring in body \"housing\": ");
+        let lines = said.lines().filter(|said| said.starts_with(&line));
+        assert_eq!(lines.count(), 1, "{said}");
         let own = summary(&dir, &format!("found/{name}"));
         assert!(number(&own, "/seat/body_energy_j") > 0.0);
         assert!(dir.path(&format!("found/{name}/seat_outer.csv")).exists());
@@ -57,7 +62,7 @@ fn a_pair_in_one_housing_gives_more_than_in_a_stiff_one() {
 }
 
 /// The text of a scene for a file of the folder, up to its analysis.
-fn without_analysis(dir: &Dir, scene: &str) -> String {
+pub fn without_analysis(dir: &Dir, scene: &str) -> String {
     let text = dir.text(scene).replace("../meshes", "meshes");
     let text = text.replace("\"types/", "\"scenes/types/");
     text.split_once("\n[static]").unwrap().0.to_string()

@@ -7,8 +7,10 @@ use anyhow::anyhow;
 use checkpoint::{Grid, StepRecord, all_steps, read_any_step, read_mesh};
 use clap::{Args, ValueEnum};
 use comm::print;
+use results::bodies::where_bodies_are;
 use results::export::{csv, integration_points, vtu};
 use results::failure::Failure;
+use results::summary::{bodies_shown_in, read_summary};
 use results::whole::{make_output_folder, write_new};
 
 /// What the command line asks for.
@@ -66,6 +68,10 @@ impl Export {
             self.to.extension(),
             self.folder().display()
         ));
+        let summary = read_summary(&self.dir).unwrap_or_default();
+        for line in where_bodies_are(&bodies_shown_in(&summary)) {
+            print::line(format_args!("body {line}"));
+        }
     }
 
     /// The committed steps that were asked for.

@@ -11,11 +11,12 @@ use checkpoint::{
 use comm::print;
 use mesh::{Mesh, MeshError};
 use results::answer;
+use results::bodies::where_bodies_are;
 use results::disk::size;
 use results::failure::Failure;
 use results::integrity::doubts;
 use results::reduction::{REDUCTION, REDUCTION_FILE};
-use results::summary::SUMMARY_FILE;
+use results::summary::{SUMMARY_FILE, bodies_shown_in};
 
 /// How closely the steps of a folder are looked at.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -255,6 +256,9 @@ fn folder_state(dir: &Path) -> Result<(), Failure> {
     if let Ok(text) = std::fs::read_to_string(dir.join(SUMMARY_FILE)) {
         let summary: serde_json::Value = serde_json::from_str(&text).context("summary.json is no JSON")?;
         line("status", summary["status"].as_str().unwrap_or("unknown"));
+        where_bodies_are(&bodies_shown_in(&summary))
+            .iter()
+            .for_each(|text| line("body", text));
     }
     if let Some(writer) = checkpoint::lock::writer(dir)? {
         line("writer", &writer);

@@ -203,6 +203,7 @@ fn warnings(
         if *body == ModeBody::Bearing && rigid > 0 {
             warnings.push(without_stiffness("bearing", rigid));
         }
+        warnings.extend(loose_balls("bearing", set.loose_balls));
     }
     warnings
 }
@@ -214,5 +215,22 @@ pub fn too_few(name: &str, found: usize, wanted: usize) -> Option<String> {
 
 /// Says that some modes have no stiffness.
 pub fn without_stiffness(name: &str, n: usize) -> String {
-    format!("{name}: {n} modes are motions without stiffness; balls without load have two each")
+    let are = if n == 1 {
+        "mode is a motion"
+    } else {
+        "modes are motions"
+    };
+    format!("{name}: {n} {are} without stiffness")
+}
+
+/// Says how many balls take no part.
+pub fn loose_balls(name: &str, n: usize) -> Option<String> {
+    let carry = if n == 1 { "ball carries" } else { "balls carry" };
+    (n > 0).then(|| {
+        format!(
+            "{name}: {n} {carry} nothing, with neither stiffness nor coupling; {} motions at zero frequency are left \
+             out of the modes",
+            2 * n
+        )
+    })
 }

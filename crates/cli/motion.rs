@@ -242,7 +242,7 @@ impl March<'_> {
         };
         let summary = Summary::new(self.scene, self.model, findings, &costs)
             .with_life(life::of_run(self.scene, self.dir))
-            .with_seats(agree(seat::of_motion(motion, state, self.dir))?);
+            .with_seats(agree(seat::of_motion(motion, state, (self.dir, None)))?);
         agree(summary.write(self.dir).map_err(Failure::from))?;
         ended?;
         console::print_snapshot(&Snapshot::of_motion(motion, state));

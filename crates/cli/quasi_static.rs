@@ -330,7 +330,7 @@ impl QuasiStaticRun<'_, '_, '_> {
         let seconds = clock.lap();
         progress.finish();
         let (scene, model, settings) = (self.scene, self.model, self.settings);
-        let seat = seat::of_run(model, &self.last, self.dir);
+        let seat = seat::of_run(model, &self.last, (self.dir, None));
         let findings = self.findings(&ended, remarks);
         let snapshot = findings.last.clone();
         let solver = &self.bearing.solver;

@@ -347,7 +347,9 @@ fn summary(
     dir: &Path,
 ) -> Result<Summary, Failure> {
     let last = solutions.last();
-    let seat = last.map_or(Ok([None, None]), |last| seat::of_run(model, &last.solution, dir));
+    let seat = last.map_or(Ok([None, None]), |last| {
+        seat::of_run(model, &last.solution, (dir, None))
+    });
     let summary = Summary::new(scene, model, findings, costs).with_life(life::of_run(scene, dir));
     Ok(summary.with_seats(agree(seat)?))
 }

@@ -4,13 +4,14 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use assembly::{Assembly, MountedBearing};
-use comm::Communicator;
+use comm::{Communicator, print};
 use dynamics::Model;
+use results::bodies::{BodiesElsewhere, bodies_elsewhere, where_bodies_are};
 use results::cut::TableCut;
 use results::failure::{Failure, agree};
 use results::files::{Files, ResumedFrom};
 use results::memory::Forecasts;
-use results::seat::SeatSummaries;
+use results::seat::{SeatFolder, SeatSummaries};
 use results::several::SeveralTables;
 use results::snapshot::Snapshot;
 use results::state_arrays::Arrays;
@@ -74,21 +75,33 @@ fn resume_files(
     Ok((agree(files)?, bearing.scene))
 }
 
-/// Closes the files of a bearing, whose scene is `placed`, and writes its summary into its folder; the warnings of its
-/// seats, which are found when the files are closed. Collective.
+/// Closes the files of a bearing by its number, whose scene is `placed`, and writes its summary into its folder `own`;
+/// the warnings of its seats, which are found when the files are closed. Collective.
 pub fn close_bearing(
     files: Files,
-    (placed, mounted, own): (&Scene, &MountedBearing, &Path),
+    (placed, bearings, number): (&Scene, &[MountedBearing], usize),
+    own: &Path,
     (findings, forecast, laps): (Findings, Forecasts, Laps),
-    seats: impl FnOnce(&Path) -> Result<SeatSummaries, Failure>,
+    seats: impl FnOnce(SeatFolder<'_>) -> Result<SeatSummaries, Failure>,
     start: Instant,
 ) -> Result<Vec<String>, Failure> {
+    let mounted = &bearings[number];
+    let elsewhere = bodies_elsewhere(bearings, number);
+    say_where_bodies_are(&mounted.name, &elsewhere);
     let costs = agree(files.finish(0.0, forecast, laps, start))?;
-    let seats = agree(seats(own))?;
+    let seats = agree(seats((own, Some(&mounted.name))))?;
     let warnings = of_seats(&mounted.name, &seats);
     let summary = Summary::new(placed, &mounted.model, findings, &costs).with_seats(seats);
+    let summary = summary.with_bodies_shown_in(elsewhere);
     agree(summary.write(own).map_err(Failure::from))?;
     Ok(warnings)
+}
+
+/// Says where the bodies of a bearing are that its own files do not show.
+pub fn say_where_bodies_are(bearing: &str, elsewhere: &BodiesElsewhere) {
+    for line in where_bodies_are(elsewhere) {
+        print::line(format_args!("bearing {bearing:?}: body {line}"));
+    }
 }
 
 /// Opens the tables beside the folders of the bearings; what stands after the step is moved aside.

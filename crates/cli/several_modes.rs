@@ -8,6 +8,7 @@ use assembly::{Assembly, AssemblySolution, AssemblySolver};
 use dense::Searched;
 use dynamics::modes::ModesOfSeveral;
 use dynamics::{ModeSet, ModesSettings};
+use results::bodies::bodies_elsewhere;
 use results::failure::Failure;
 use results::modes::{FrequenciesSummary, ModeFiles, ModesSummary, print_modes};
 use results::several::{ListState, SeveralFindings, SeveralSummary, SeveralTables};
@@ -16,10 +17,11 @@ use results::snapshot::Snapshot;
 use results::summary::{READ, TOTAL};
 use scene::{ModeBody, Modes, SeveralScene};
 
-use crate::modes::{beyond, report, require_one_process, too_few, without_stiffness};
+use crate::modes::{beyond, loose_balls, report, require_one_process, too_few, without_stiffness};
 use crate::options::Limits;
 use crate::progress::Progress;
 use crate::several::{make_folder, placed, say_types, solving, warnings_at, words_of};
+use crate::several_files::say_where_bodies_are;
 use crate::several_read::{ReadList, read_list, require_memory_of_all};
 use crate::several_ready::require_space;
 
@@ -109,7 +111,9 @@ fn write(
         let remarks = [equilibrium.warnings.clone(), Vec::new()];
         let sets = [(ModeBody::Bearing, set)];
         let summary = ModesSummary::new(&bearing.scene, model, &sets, Some(&snapshot), run, remarks, start);
-        summary.write(&own)?;
+        let elsewhere = bodies_elsewhere(&assembly.bearings, i);
+        say_where_bodies_are(&bearing.name, &elsewhere);
+        summary.with_bodies_shown_in(elsewhere).write(&own)?;
     }
     Ok(())
 }
@@ -123,6 +127,7 @@ fn warnings_of(scene: &SeveralScene, found: &ModesOfSeveral, wanted: &Modes) -> 
     if rigid > 0 {
         warnings.push(without_stiffness(NAME, rigid));
     }
+    warnings.extend(loose_balls(NAME, found.loose_balls));
     let highest = found.modes.last().map_or(0.0, |mode| mode.whole.frequency);
     for body in scene
         .bearings

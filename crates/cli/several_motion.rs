@@ -269,10 +269,11 @@ impl ListMarch<'_> {
                 warnings: self.watches[i].warnings(motion.surfaces(), |step| motion.time(step)),
                 advice: Vec::new(),
             };
-            let mounted = &self.assembly.bearings[i];
+            let own = self.dir.join(&self.assembly.bearings[i].name);
             warnings.extend(close_bearing(
                 files,
-                (&self.placed[i], mounted, &self.dir.join(&mounted.name)),
+                (&self.placed[i], &self.assembly.bearings, i),
+                &own,
                 (findings, forecast, motion.costs.laps()),
                 |own| seat::of_motion(motion, state, own),
                 start,

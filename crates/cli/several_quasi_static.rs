@@ -323,7 +323,8 @@ impl ListEquilibria<'_> {
             };
             warnings.extend(close_bearing(
                 files,
-                (&self.placed[i], mounted, &self.dir.join(&mounted.name)),
+                (&self.placed[i], &self.list.assembly.bearings, i),
+                &self.dir.join(&mounted.name),
                 (findings, forecast, factors.laps()),
                 |own| seat::of_run(&mounted.model, found, own),
                 start,

@@ -332,7 +332,8 @@ impl SeveralFiles {
             };
             warnings.extend(close_bearing(
                 files,
-                (&scene.bearings[i].scene, mounted, &dir),
+                (&scene.bearings[i].scene, &assembly.bearings, i),
+                &dir,
                 (findings, forecast, factors.laps()),
                 |own| seat::of_run(&mounted.model, found, own),
                 start,

@@ -36,7 +36,7 @@ pub struct SeatTraction {
 }
 
 /// How much the last functions matter: shares of the energy that the joint puts into the body.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TieConvergence {
     /// Of the last two orders n.
     pub last_orders: f64,
@@ -255,11 +255,9 @@ impl SeatTraction {
         self.forces.iter().zip(&self.motion).map(|(f, g)| f * g)
     }
 
-    /// Shares of the last functions in the energy.
-    pub fn convergence(&self, basis: SeatBasis) -> TieConvergence {
-        let Some([harmonics, across]) = basis.largest() else {
-            return TieConvergence::default();
-        };
+    /// Shares of the last functions in the energy; None of a seat that moves as a rigid one.
+    pub fn convergence(&self, basis: SeatBasis) -> Option<TieConvergence> {
+        let [harmonics, across] = basis.largest()?;
         let share = |is_last: &dyn Fn([usize; 2]) -> bool| {
             let mut sum = 0.0;
             for (function, product) in self.products().enumerate() {
@@ -272,9 +270,9 @@ impl SeatTraction {
                 total => (sum / total).abs(),
             }
         };
-        TieConvergence {
+        Some(TieConvergence {
             last_orders: share(&|[n, _]| n + 2 > harmonics),
             last_degree: share(&|[_, j]| j == across),
-        }
+        })
     }
 }

@@ -34,16 +34,47 @@ const VIRIDIS: [[f64; 3]; 9] = [
     [253.0, 231.0, 37.0],
 ];
 
+/// RdBu of ColorBrewer (Brewer, Harrower, Penn State, Apache-2.0), nine classes from blue to red.
+const BLUE_TO_RED: [[f64; 3]; 9] = [
+    [33.0, 102.0, 172.0],
+    [67.0, 147.0, 195.0],
+    [146.0, 197.0, 222.0],
+    [209.0, 229.0, 240.0],
+    [247.0, 247.0, 247.0],
+    [253.0, 219.0, 199.0],
+    [244.0, 165.0, 130.0],
+    [214.0, 96.0, 77.0],
+    [178.0, 24.0, 43.0],
+];
+
 /// Part of the map that curves reach: the lightest colours would vanish on white.
 pub const BRIGHTEST: f64 = 0.9;
 
+/// A row of colours.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Map {
+    /// From dark to light: of values that grow from one end.
+    Sequential,
+    /// From blue to red, nearly white in the middle: of values to both sides of zero.
+    Diverging,
+}
+
 /// Colour of the part `t` from 0 to 1 of a range.
 pub fn of_part(t: f64) -> RGBColor {
-    let last = VIRIDIS.len() - 1;
+    on_map(Map::Sequential, t)
+}
+
+/// Colour of the part `t` from 0 to 1 of a range, on a map.
+pub fn on_map(map: Map, t: f64) -> RGBColor {
+    let colours = match map {
+        Map::Sequential => &VIRIDIS,
+        Map::Diverging => &BLUE_TO_RED,
+    };
+    let last = colours.len() - 1;
     let place = t.clamp(0.0, 1.0) * last as f64;
     let i = (place.floor() as usize).min(last - 1);
     let between = |c: usize| {
-        let (a, b) = (VIRIDIS[i][c], VIRIDIS[i + 1][c]);
+        let (a, b) = (colours[i][c], colours[i + 1][c]);
         (a + (b - a) * (place - i as f64)).round() as u8
     };
     RGBColor(between(0), between(1), between(2))

@@ -375,6 +375,52 @@ fn many_shaded_series_have_a_colour_bar_in_the_colours_of_the_curves() {
     assert_eq!(clashes(&svg).unwrap(), Vec::<String>::new());
 }
 
+/// A surface of these values in a row, and the colours of its cells from left to right, then of the bar from below.
+fn colours_of(values: &[f64]) -> (Vec<String>, String) {
+    let edges = (0..=values.len()).map(|i| i as f64).collect();
+    let value = Axis::linear("pressure", "MPa").including(0.0);
+    let surface = Surface::new(value, edges, vec![0.0, 1.0], values.to_vec()).unwrap();
+    let axes = [
+        Axis::linear("azimuth", "deg").tight(),
+        Axis::linear("z", "mm").tight(),
+    ];
+    let [x, y] = axes;
+    let svg = Figure::new("Seat", x, y)
+        .surface(surface.parted_at_zero())
+        .svg()
+        .unwrap();
+    assert_eq!(clashes(&svg).unwrap(), Vec::<String>::new());
+    let fills = svg.lines().filter(|line| line.starts_with("<rect"));
+    let fills = fills.filter_map(|line| line.split("fill=\"").nth(1)?.split('"').next());
+    (fills.map(str::to_string).collect(), svg.clone())
+}
+
+/// Wrong: pressure and pull would have colours that do not tell them apart, or not at the same size the same strength;
+/// values of one sign would lose the map of all other figures.
+#[test]
+fn values_of_both_signs_part_at_zero() {
+    let (both, svg) = colours_of(&[-3.0, -6.0, 3.0, 10.0]);
+    let [blue, red] = [(33, 102, 172), (178, 24, 43)].map(|(r, g, b)| format!("#{r:02X}{g:02X}{b:02X}"));
+    // The largest is red. Of the other sign nothing is as large, but the bar goes there.
+    let has = |colours: &[String], colour: &str| colours.iter().filter(|c| *c == colour).count();
+    assert_eq!([has(&both, &blue), has(&both, &red)], [1, 2], "{both:?}");
+    for tick in ["−10", "0", "10"] {
+        assert!(svg.lines().any(|line| line.trim() == tick), "{tick}");
+    }
+    let (mirrored, _) = colours_of(&[3.0, 6.0, -3.0, -10.0]);
+    assert_eq!(
+        [has(&mirrored, &blue), has(&mirrored, &red)],
+        [2, 1],
+        "{mirrored:?}"
+    );
+    // Round-off is no sign.
+    for one in [[1.0, 6.0, 3.0, 10.0], [-1e-12, 6.0, 3.0, 10.0]] {
+        let (one, svg) = colours_of(&one);
+        assert!(has(&one, "#440154") > 0 && has(&one, &red) == 0, "{one:?}");
+        assert!(!svg.lines().any(|line| line.trim() == "−10"));
+    }
+}
+
 /// The figures of these tests as files, to look at: FIGURES=DIR.
 #[test]
 fn examples_can_be_looked_at() {

@@ -26,6 +26,7 @@ mod section;
 mod several;
 mod shades;
 mod shaft;
+mod shaft_modes;
 mod stiffness;
 mod stress_step;
 mod surface;
@@ -146,6 +147,7 @@ pub fn figures(dir: &Path, choice: &Choice) -> Result<Figures, Failure> {
     if several::is_of_several(dir) {
         let mut drawn = with_names(several::figures(dir))?;
         drawn.extend(modes::figures(dir)?);
+        drawn.extend(with_names(shaft_modes::figures(dir))?);
         drawn.extend(linear_figures(dir)?);
         let problems = Vec::new();
         return Ok(Figures { drawn, problems });

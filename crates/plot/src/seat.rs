@@ -48,12 +48,15 @@ fn of_ring(table: &Table, side: Side) -> anyhow::Result<Vec<(String, Figure)>> {
         azimuth_axis(),
         y_axis,
     )
-    .surface(Surface::new(
-        MEGAPASCAL.axis("pressure").including(0.0),
-        x_edges,
-        y_edges,
-        values,
-    )?)
+    .surface(
+        Surface::new(
+            MEGAPASCAL.axis("pressure").including(0.0),
+            x_edges,
+            y_edges,
+            values,
+        )?
+        .parted_at_zero(),
+    )
     .size(900, 400);
     let mut motion = Figure::new(
         format!("Motion of the middle of the {seat}"),

@@ -6,19 +6,13 @@ use figure::{Axis, Figure, Series};
 use results::several::{BEARINGS_TABLE, SHAFT_TABLE};
 use results::table::Table;
 
-use super::quantity::{AxisUnit, MICROMETRE, points};
+use super::quantity::{AxisUnit, MICROMETRE, MILLIMETRE, NEWTON, points};
 use super::run::axis_of;
 
-const MILLIMETRE: AxisUnit = AxisUnit {
-    sign: "mm",
-    factor: 1e3,
-};
-const NEWTON: AxisUnit = AxisUnit {
-    sign: "N",
-    factor: 1.0,
-};
 /// Displacement below which a direction is not drawn, um.
 const NOTHING: f64 = 1e-6;
+/// Places along the shaft, m.
+const POSITION: &str = "position_m";
 /// Column before that of a swept value.
 const TIME: usize = 1;
 
@@ -35,6 +29,7 @@ pub fn figures(dir: &Path) -> anyhow::Result<Vec<(String, Figure)>> {
         return Ok(found);
     };
     found.push(("shaft_line".to_string(), line(&shaft, &bearings)?));
+    found.extend(range(&shaft)?.map(|figure| ("shaft_line_range".to_string(), figure)));
     found.extend(loads(dir, &bearings)?.map(|figure| ("bearing_loads".to_string(), figure)));
     Ok(found)
 }
@@ -77,6 +72,45 @@ fn line(shaft: &Table, bearings: &Table) -> anyhow::Result<Figure> {
     Ok(figure)
 }
 
+/// Where the line of the shaft has been over time: mean, least and largest displacement of each place; None of one
+/// instant, of a sweep, and of a shaft that stands.
+fn range(shaft: &Table) -> anyhow::Result<Option<Figure>> {
+    let steps = shaft.column("step")?;
+    let n = steps.iter().take_while(|step| **step == steps[0]).count();
+    let is_swept = shaft.names().get(TIME + 1).is_none_or(|name| name != POSITION);
+    // Rows of a step follow each other; a step that is not whole is left out.
+    let n_steps = steps.len().checked_div(n).unwrap_or(0);
+    if is_swept || n_steps < 2 {
+        return Ok(None);
+    }
+    let z = MILLIMETRE.of(&shaft.column(POSITION)?[..n]);
+    let axis = MILLIMETRE.axis("position along the shaft");
+    let mut figure = Figure::new(
+        "Deflection line of the shaft over time",
+        axis,
+        MICROMETRE.axis("displacement"),
+    )
+    .note("Lines are means over the steps, bands go from the least to the largest.");
+    let mut moves = false;
+    for name in ["x", "y", "z"] {
+        let values = MICROMETRE.of(shaft.column(&format!("{name}_m"))?);
+        if values.iter().all(|u| u.abs() < NOTHING) {
+            continue;
+        }
+        moves = true;
+        let at = |place: usize| values[..n * n_steps].iter().skip(place).step_by(n);
+        let mean = |place: usize| at(place).sum::<f64>() / n_steps as f64;
+        let ends = |place: usize| {
+            at(place).fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], u| {
+                [low.min(*u), high.max(*u)]
+            })
+        };
+        let mean: Vec<f64> = (0..n).map(mean).collect();
+        figure = figure.series(Series::line(name, points(&z, &mean)).band((0..n).map(ends).collect()));
+    }
+    Ok(moves.then_some(figure))
+}
+
 /// The largest ball force of each bearing over the points of a sweep; none of one point.
 fn loads(dir: &Path, bearings: &Table) -> anyhow::Result<Option<Figure>> {
     let swept = bearings.names().get(TIME + 1).filter(|name| *name != "bearing");
@@ -114,4 +148,34 @@ pub fn names(dir: &Path, n: usize) -> anyhow::Result<Vec<String>> {
     let column = head.iter().position(|name| *name == "bearing").unwrap_or(0);
     let name = |line: &str| line.split(',').nth(column).unwrap_or_default().to_string();
     Ok(lines.take(n).map(name).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn drawn(table: &str) -> Option<String> {
+        let dir = tempfile::tempdir().unwrap();
+        std::fs::write(dir.path().join(SHAFT_TABLE), table).unwrap();
+        let table = Table::read(dir.path(), SHAFT_TABLE).unwrap().unwrap();
+        range(&table).unwrap().map(|figure| figure.svg().unwrap())
+    }
+
+    /// Wrong: the figure would show the end for the whole time, or be drawn of one instant, a sweep, or a shaft that
+    /// stands. Over three steps the end of the shaft is at 0, 3 and 6 um, so the axis goes there.
+    #[test]
+    fn the_line_over_time_has_its_means_and_ends() {
+        let rows = "0,0.0,0.0,0.0,0.0,0.0\n0,0.0,0.1,0.0,0.0,0.0\n1,0.1,0.0,0.0,0.0,0.0\n1,0.1,0.1,6e-6,0.0,0.0\n\
+                    2,0.2,0.0,0.0,0.0,0.0\n2,0.2,0.1,3e-6,0.0,0.0\n";
+        let head = "step,time_s,position_m,x_m,y_m,z_m\n";
+        let svg = drawn(&format!("{head}{rows}")).unwrap();
+        assert!(svg.contains("over time") && svg.lines().any(|line| line.trim() == "6"));
+        assert_eq!(svg.matches("<polygon").count(), 1, "a band of x alone");
+        let first: String = rows.lines().take(2).map(|row| format!("{row}\n")).collect();
+        assert!(drawn(&format!("{head}{first}")).is_none());
+        assert!(drawn(&format!("{head}{}", rows.replace("e-6", "e-13"))).is_none());
+        let swept = "step,time_s,pairing.offset_m,position_m,x_m,y_m,z_m\n0,0,1e-6,0.0,0.0,0.0,0.0\n\
+                     1,1,2e-6,0.0,1e-6,0.0,0.0\n";
+        assert!(drawn(swept).is_none());
+    }
 }

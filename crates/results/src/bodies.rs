@@ -1,5 +1,9 @@
 //! The bodies in which rings sit, as results show them.
 
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use assembly::MountedBearing;
 use body::Surrounding;
 use contact::Side;
 use dynamics::motion::{BodyState, Motion, MotionState};
@@ -41,6 +45,37 @@ pub fn bodies_of(model: &Model) -> Vec<ShownBody<'_>> {
         })
     };
     Side::BOTH.into_iter().rev().filter_map(of).collect()
+}
+
+/// Bodies in which rings of a bearing sit and that the files of another one show: their names, and the folder of that
+/// one beside the folder of this.
+pub type BodiesElsewhere = BTreeMap<String, String>;
+
+/// The bodies of a bearing, by its number in a list, that the files of another one show.
+pub fn bodies_elsewhere(bearings: &[MountedBearing], number: usize) -> BodiesElsewhere {
+    let of = |side: Side| {
+        let (_, tie) = tied(&bearings[number].model, side).filter(|(_, tie)| tie.seat != 0)?;
+        let body = tie.body.as_ref().filter(|body| body.mesh.is_some())?;
+        let shows = |other: &&MountedBearing| {
+            tied(&other.model, side).is_some_and(|(_, other)| {
+                other.seat == 0 && other.body.as_ref().is_some_and(|b| Arc::ptr_eq(b, body))
+            })
+        };
+        let first = bearings.iter().find(shows)?;
+        Some((body.name.clone(), format!("../{}", first.name)))
+    };
+    Side::BOTH.into_iter().filter_map(of).collect()
+}
+
+/// Says where bodies of the results of a bearing are.
+pub fn where_bodies_are(elsewhere: &BodiesElsewhere) -> Vec<String> {
+    let line = |(name, folder): (&String, &String)| {
+        format!(
+            "{name:?} is in the files of {folder}; raceway export of the folder above, --to vtu, has all bearings with \
+             their bodies"
+        )
+    };
+    elsewhere.iter().map(line).collect()
 }
 
 /// Displacement of such a body at one instant.

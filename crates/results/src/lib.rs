@@ -41,6 +41,7 @@ pub mod several;
 pub mod several_modes;
 pub mod several_print;
 pub mod several_stiffness;
+mod shaft_sections;
 pub mod shown;
 pub mod snapshot;
 pub mod state_arrays;

@@ -18,7 +18,7 @@ use scene::{ModeBody, Scene};
 use serde::Serialize;
 use timer::Laps;
 
-use super::bodies::{BodyField, bodies_of};
+use super::bodies::{BodiesElsewhere, BodyField, bodies_of};
 use super::fields;
 use super::files::{mesh_file, say_folder, storage};
 use super::folder;
@@ -237,6 +237,9 @@ pub struct ModesSummary {
     clearance: Option<ClearanceSummary>,
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     fits: BTreeMap<&'static str, FitSummary>,
+    /// Bodies that the files of another bearing of the list show, with its folder; absent without such.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    bodies_shown_in: BodiesElsewhere,
     warnings: Vec<String>,
     advice: Vec<String>,
     timing_s: BTreeMap<&'static str, f64>,
@@ -297,10 +300,19 @@ impl ModesSummary {
             balls: equilibrium.map(|e| e.balls.clone()),
             clearance: model.mounting.report.as_ref().map(ClearanceSummary::new),
             fits: fits(model.mounting.report.as_ref()),
+            bodies_shown_in: BodiesElsewhere::new(),
             warnings,
             advice,
             timing_s: [FACTOR, SEARCH, TOTAL].map(|lap| (lap, laps.seconds(lap))).into(),
             peak_memory_bytes: peak_memory(),
+        }
+    }
+
+    /// The same with the bodies that the files of another bearing show.
+    pub fn with_bodies_shown_in(self, bodies_shown_in: BodiesElsewhere) -> ModesSummary {
+        ModesSummary {
+            bodies_shown_in,
+            ..self
         }
     }
 

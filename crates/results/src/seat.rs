@@ -53,10 +53,10 @@ pub struct SeatSummary {
     harmonics: usize,
     across: usize,
     functions: usize,
-    /// Share of the last two orders round the seat in the energy of the body.
-    energy_share_last_orders: f64,
-    /// Share of the last degree across.
-    energy_share_last_degree: f64,
+    /// Share of the last two orders round the seat in the energy of the body; none of a seat that moves as a rigid one.
+    energy_share_last_orders: Option<f64>,
+    /// Share of the last degree across; none of a seat that moves as a rigid one.
+    energy_share_last_degree: Option<f64>,
     /// Strain energy that this seat puts into the body, all of it where it is the only seat; part of that of the rings.
     body_energy_j: f64,
     /// Of a seat that moves as a rigid one nothing says how its forces spread.
@@ -77,24 +77,35 @@ pub fn tied(model: &Model, side: Side) -> Option<(&RingModel, &Arc<SeatTie>)> {
     Some((ring, ring.tie.as_ref()?))
 }
 
+/// Where the seats of a bearing are written, and its name where there are several.
+pub type SeatFolder<'p> = (&'p Path, Option<&'p str>);
+
 /// Writes what the seats of rings in bodies carry, and sums it up; None where a ring is in none.
-pub fn of_run(model: &Model, solution: &StaticSolution, dir: &Path) -> Result<SeatSummaries, Failure> {
-    let [inner, outer] = Side::BOTH.map(|side| finished(SeatState::new(model, solution, side)?, dir));
+pub fn of_run(
+    model: &Model,
+    solution: &StaticSolution,
+    to: SeatFolder<'_>,
+) -> Result<SeatSummaries, Failure> {
+    let [inner, outer] = Side::BOTH.map(|side| finished(SeatState::new(model, solution, side)?, to));
     Ok([inner?, outer?])
 }
 
 /// The same at the end of a motion.
-pub fn of_motion(motion: &Motion<'_>, state: &MotionState, dir: &Path) -> Result<SeatSummaries, Failure> {
-    let [inner, outer] = Side::BOTH.map(|side| finished(SeatState::in_motion(motion, state, side)?, dir));
+pub fn of_motion(
+    motion: &Motion<'_>,
+    state: &MotionState,
+    to: SeatFolder<'_>,
+) -> Result<SeatSummaries, Failure> {
+    let [inner, outer] = Side::BOTH.map(|side| finished(SeatState::in_motion(motion, state, side)?, to));
     Ok([inner?, outer?])
 }
 
-fn finished(state: Option<SeatState>, dir: &Path) -> Result<Option<SeatSummary>, Failure> {
-    Ok(state.map(|state| state.finish(dir)).transpose()?)
+fn finished(state: Option<SeatState>, to: SeatFolder<'_>) -> Result<Option<SeatSummary>, Failure> {
+    Ok(state.map(|state| state.finish(to)).transpose()?)
 }
 
 /// The ring on the shaft.
-const ON_SHAFT: Side = Side::BOTH[0];
+pub(crate) const ON_SHAFT: Side = Side::BOTH[0];
 
 /// Mean motion of the inner ring's seat beside the rigid motion of the shaft whose body it sits on, at the axis point,
 /// in the frame of the bearing, m and rad; None where the inner ring is on no such body. Seats were resolved before.
@@ -197,7 +208,7 @@ impl SeatState {
     }
 
     /// Writes the table, says how converged the joint is, and makes the entry of the summary. Rank 0 writes for all.
-    pub fn finish(&self, dir: &Path) -> anyhow::Result<SeatSummary> {
+    pub fn finish(&self, (dir, bearing): SeatFolder<'_>) -> anyhow::Result<SeatSummary> {
         let points = self.points();
         if Communicator::world().is_root() && !points.is_empty() {
             let text = table(&points);
@@ -205,15 +216,7 @@ impl SeatState {
             whole::write(&dir.join(name), text.as_bytes(), |old| whole::holds(old, HEAD))?;
         }
         let summary = self.summary(&points);
-        print::line(format_args!(
-            "seat of the {} ring in body {:?}: {} functions; the last two orders hold {:.2e} of its energy, the last \
-             degree across {:.2e}",
-            self.side.name(),
-            summary.body,
-            summary.functions,
-            summary.energy_share_last_orders,
-            summary.energy_share_last_degree
-        ));
+        print::line(format_args!("{}", summary.line(self.side, bearing)));
         Ok(summary)
     }
 
@@ -223,17 +226,18 @@ impl SeatState {
             .body
             .as_ref()
             .expect("a joint that carries something has a body");
-        let share = self.traction.convergence(self.tie.space.basis);
+        let basis = self.tie.space.basis;
+        let share = self.traction.convergence(basis);
         // Rigid motions are of the first order and degree.
-        let [harmonics, across] = self.tie.space.basis.largest().unwrap_or([1, 1]);
+        let [harmonics, across] = basis.largest().unwrap_or([1, 1]);
         let pressures = || points.iter().map(|p| -p.traction[0]);
         SeatSummary {
             body: body.name.clone(),
             harmonics,
             across,
             functions: self.functions.n(),
-            energy_share_last_orders: share.last_orders,
-            energy_share_last_degree: share.last_degree,
+            energy_share_last_orders: share.map(|share| share.last_orders),
+            energy_share_last_degree: share.map(|share| share.last_degree),
             body_energy_j: self.energy,
             largest_pressure_pa: pressures().reduce(f64::max),
             smallest_pressure_pa: pressures().reduce(f64::min),
@@ -273,9 +277,27 @@ impl SeatState {
 }
 
 impl SeatSummary {
+    /// What the screen shows of the seat of a ring, of a list that of a bearing by its name.
+    fn line(&self, side: Side, bearing: Option<&str>) -> String {
+        let of = bearing.map_or(String::new(), |name| format!("bearing {name:?}: "));
+        let shares = match (self.energy_share_last_orders, self.energy_share_last_degree) {
+            (Some(orders), Some(degree)) => format!(
+                "{} functions; the last two orders hold {orders:.2e} of its energy, the last degree across \
+                 {degree:.2e}",
+                self.functions
+            ),
+            _ => "it moves as a rigid one, with its reference node".to_string(),
+        };
+        format!(
+            "{of}seat of the {} ring in body {:?}: {shares}",
+            side.name(),
+            self.body
+        )
+    }
+
     /// What a user should know.
     pub fn warning(&self) -> Option<String> {
-        let (orders, degree) = (self.energy_share_last_orders, self.energy_share_last_degree);
+        let (orders, degree) = (self.energy_share_last_orders?, self.energy_share_last_degree?);
         if orders.max(degree) < UNRESOLVED {
             return None;
         }

@@ -14,6 +14,7 @@ use scene::{Analysis, Scene};
 use serde::Serialize;
 use timer::Laps;
 
+use super::bodies::BodiesElsewhere;
 use super::film::{FilmLaw, FilmSummary};
 use super::memory::Forecasts;
 use super::mounting::{ClearanceSummary, FitSummary, fits};
@@ -92,6 +93,9 @@ pub struct Summary {
     /// The seat of the outer ring in an elastic body; absent without one.
     #[serde(skip_serializing_if = "Option::is_none")]
     seat: Option<SeatSummary>,
+    /// Bodies that the files of another bearing of the list show, with its folder; absent without such.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    bodies_shown_in: BodiesElsewhere,
     warnings: Vec<String>,
     /// What rules of thumb say about its effects.
     advice: Vec<String>,
@@ -231,6 +235,7 @@ impl Summary {
             life: None,
             seat_inner: None,
             seat: None,
+            bodies_shown_in: BodiesElsewhere::new(),
             warnings,
             advice: findings.advice,
             assumed: scene.assumed.clone(),
@@ -255,6 +260,14 @@ impl Summary {
         Summary {
             seat_inner,
             seat,
+            ..self
+        }
+    }
+
+    /// The same with the bodies that the files of another bearing show.
+    pub fn with_bodies_shown_in(self, bodies_shown_in: BodiesElsewhere) -> Summary {
+        Summary {
+            bodies_shown_in,
             ..self
         }
     }
@@ -322,6 +335,12 @@ pub fn write_summary(dir: &Path, summary: &impl Serialize) -> anyhow::Result<()>
     let path = dir.join(SUMMARY_FILE);
     let text = serde_json::to_string_pretty(summary).context("cannot format summary.json")? + "\n";
     whole::write(&path, text.as_bytes(), |old| whole::holds(old, "\"schema\""))
+}
+
+/// What the summary of a bearing says of bodies that the files of another one show.
+pub fn bodies_shown_in(summary: &serde_json::Value) -> BodiesElsewhere {
+    let found = summary.get("bodies_shown_in").cloned().unwrap_or_default();
+    serde_json::from_value(found).unwrap_or_default()
 }
 
 /// The summary in `dir`; None if there is none that can be read.

@@ -10,8 +10,9 @@
 //! ```
 //!
 //! spread over the ring by the weights of its patch. The second term is the geometric stiffness of the contact force:
-//! all that holds a ball across the contact normals. A contact without load has none, so unloaded balls have modes at
-//! zero. Levers are those of the deformed state, and the finite motion of the shaft adds the stiffness that its
+//! all that holds a ball across the contact normals. A contact without load has neither. A ball without load on both
+//! raceways is coupled to nothing: its two motions at zero frequency are left out ([`ModeSet::loose_balls`]).
+//! Levers are those of the deformed state, and the finite motion of the shaft adds the stiffness that its
 //! curvature gives the contact forces ([`crate::system::Circle`]).
 //!
 //! - **Free** ring: six rigid motions at zero, then elastic modes, most of them double.
@@ -36,6 +37,8 @@ mod shape;
 mod small;
 mod system;
 
+use std::collections::BTreeSet;
+
 use contact::Side;
 use dense::{EigenProblem, LanczosSettings, Searched, lowest_pairs};
 use ring::sparse::SparseLoad;
@@ -47,6 +50,7 @@ use crate::costs::{FACTOR, SEARCH};
 use crate::error::DynamicsError;
 use crate::model::{ContactMode, Model, ShaftDof};
 use crate::solution::StaticSolution;
+use columns::LinkTangent;
 use links::{RingCarrier, VibratingLinks, link_tangents};
 use shape::{BearingDofs, FoundPair, RingPlace};
 use small::SmallDofs;
@@ -90,7 +94,9 @@ pub struct ModesSettings {
 pub struct ModeSet {
     /// The modes; fewer than asked for when the body has no more.
     pub modes: Vec<Mode>,
-    /// Number of unknowns.
+    /// Balls that touch neither raceway. They stand still in all modes.
+    pub loose_balls: usize,
+    /// Number of unknowns, without those of loose balls.
     pub n_unknowns: usize,
     /// Blocks of Lanczos; 0 by the dense method.
     pub steps: usize,
@@ -119,7 +125,7 @@ pub fn ring_modes(
     let mut dofs = BearingDofs::default();
     dofs.rings[side.index()] = Some(RingPlace { group: 0, ring: 0 });
     search(&system, settings, RING_BLOCK, clock, progress)
-        .map(|found| found.with(|pair| Mode::new(&system, &dofs, pair)))
+        .map(|found| found.with(0, |pair| Mode::new(&system, &dofs, pair)))
 }
 
 /// Modes of the loaded bearing about an equilibrium of the model.
@@ -153,10 +159,11 @@ pub fn bearing_modes(
         first_ball: dofs.first_ball,
         carriers: &carriers,
     });
+    let loose = hold_loose_balls(&mut small, std::slice::from_ref(&dofs), &link_tangents, shift);
     let block = block(model.geometry.n_balls);
     let system = VibratingSystem::new(groups, small, link_tangents, Vec::new(), shift)?;
     search(&system, settings, block, clock, progress)
-        .map(|found| found.with(|pair| Mode::new(&system, &dofs, pair)))
+        .map(|found| found.with(loose, |pair| Mode::new(&system, &dofs, pair)))
 }
 
 /// Rate of the slowest wave over the size of a bearing, 1/s.
@@ -251,6 +258,36 @@ fn add_bearing(
     (dofs, carriers)
 }
 
+/// Makes balls of bearings stand on which no contact pushes, and says how many there are. They have neither stiffness
+/// nor coupling, and would fill the lowest modes with nothing.
+fn hold_loose_balls(
+    small: &mut SmallDofs,
+    bearings: &[BearingDofs],
+    link_tangents: &[LinkTangent],
+    shift: f64,
+) -> usize {
+    let is_stiff = |link: &&LinkTangent| link.tangent.iter().any(|entry| *entry != 0.0);
+    let lengths = link_tangents
+        .iter()
+        .filter(is_stiff)
+        .flat_map(|link| &link.lengths);
+    let pushed: BTreeSet<usize> = lengths
+        .flat_map(|length| length.small.iter().map(|(dof, _)| *dof))
+        .collect();
+    let firsts = bearings
+        .iter()
+        .flat_map(|dofs| (0..dofs.n_balls).map(|ball| dofs.first_ball + 2 * ball));
+    let mut n = 0;
+    for first in firsts {
+        let own = [first, first + 1];
+        if !own.iter().any(|dof| pushed.contains(dof)) {
+            own.iter().for_each(|dof| small.hold(*dof, shift));
+            n += 1;
+        }
+    }
+    n
+}
+
 /// Largest number of basis vectors that a search keeps, for forecasts of memory: ring alone, bearing.
 pub fn basis_sizes(number: usize, n_balls: usize) -> [usize; 2] {
     [RING_BLOCK, block(n_balls)].map(|block| LanczosSettings::new(number, block).capacity())
@@ -310,10 +347,11 @@ impl SearchedPairs {
         vectors.map(pair).collect()
     }
 
-    fn with(self, make: impl Fn(FoundPair<'_>) -> Mode) -> ModeSet {
+    fn with(self, loose_balls: usize, make: impl Fn(FoundPair<'_>) -> Mode) -> ModeSet {
         ModeSet {
             modes: self.made(make),
-            n_unknowns: self.n_unknowns,
+            loose_balls,
+            n_unknowns: self.n_unknowns - 2 * loose_balls,
             steps: self.pairs.steps,
             laps: self.laps,
         }

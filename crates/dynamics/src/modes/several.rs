@@ -20,7 +20,10 @@ use super::links::{VibratingLinks, link_tangents};
 use super::shape::{BearingDofs, FoundPair, Kinetic, Mode, Shape, is_larger};
 use super::small::SmallDofs;
 use super::system::VibratingSystem;
-use super::{ModesSettings, add_bearing, block, check_supported, grouped, search, shift, wanted, wave_rate};
+use super::{
+    ModesSettings, add_bearing, block, check_supported, grouped, hold_loose_balls, search, shift, wanted,
+    wave_rate,
+};
 use crate::error::DynamicsError;
 use crate::model::Model;
 use crate::solution::StaticSolution;
@@ -66,7 +69,9 @@ pub struct ModeOfSeveral {
 pub struct ModesOfSeveral {
     /// The modes; fewer than asked for when there are no more.
     pub modes: Vec<ModeOfSeveral>,
-    /// Number of unknowns.
+    /// Balls that touch neither raceway, of all bearings. They stand still in all modes.
+    pub loose_balls: usize,
+    /// Number of unknowns, without those of loose balls.
     pub n_unknowns: usize,
     /// Blocks of Lanczos; 0 by the dense method.
     pub steps: usize,
@@ -85,12 +90,10 @@ pub fn modes_of_several(
     for bearing in bearings {
         check_supported(bearing.model, bearing.equilibrium)?;
     }
-    let rates = bearings.iter().map(|bearing| wave_rate(bearing.model));
-    let shift = shift(settings, rates.fold(f64::INFINITY, f64::min));
-    let rings: Vec<_> = bearings
-        .iter()
-        .flat_map(|bearing| wanted(bearing.model, (Partner::SHAFT, [0.0; 5])))
-        .collect();
+    let models = || bearings.iter().map(|bearing| bearing.model);
+    let shift = shift(settings, models().map(wave_rate).fold(f64::INFINITY, f64::min));
+    let of_model = |model| wanted(model, (Partner::SHAFT, [0.0; 5]));
+    let rings: Vec<_> = models().flat_map(of_model).collect();
     let (groups, places) = grouped(&rings, shift, settings.backend)?;
     let mut small = SmallDofs::default();
     let first = small.add_structure(shaft.n, &shaft.mass, &shaft.stiffness);
@@ -123,12 +126,14 @@ pub fn modes_of_several(
         }
         all.push(dofs);
     }
+    let loose_balls = hold_loose_balls(&mut small, &all, &links, shift);
     let n_balls = all.iter().map(|dofs| dofs.n_balls).sum();
     let system = VibratingSystem::new(groups, small, links, joints, shift)?;
     let found = search(&system, settings, block(n_balls), clock, progress)?;
     Ok(ModesOfSeveral {
         modes: found.made(|pair| ModeOfSeveral::new((&system, shaft), &all, pair)),
-        n_unknowns: found.n_unknowns,
+        loose_balls,
+        n_unknowns: found.n_unknowns - 2 * loose_balls,
         steps: found.pairs.steps,
         laps: found.laps,
     })

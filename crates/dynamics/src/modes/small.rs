@@ -26,6 +26,15 @@ impl SmallDofs {
         self.n - 1
     }
 
+    /// Makes a dof stand that nothing is coupled to: its mass becomes a stiffness, of that mass at the shift, 1/s^2. So
+    /// K + s M stays what it is.
+    pub fn hold(&mut self, dof: usize, shift: f64) {
+        for entry in self.mass.extract_if(.., |entry| entry.0 == dof) {
+            let (i, k, mass) = entry;
+            self.stiffness.push((i, k, shift * mass));
+        }
+    }
+
     /// Adds dofs with a mass and a stiffness matrix, `[n][n]` flat, and returns the first.
     pub fn add_structure(&mut self, n: usize, mass: &[f64], stiffness: &[f64]) -> usize {
         let first = self.n;

@@ -12,8 +12,6 @@ use super::{bearing, equilibrium, harmonics, outer, space, surrounding, tied, tu
 
 /// Modes that are compared.
 const NUMBER: usize = 10;
-/// Modes of a bearing: balls without load have two each at zero.
-const WITH_BALLS: usize = 40;
 
 fn settings(number: usize, backend: Backend) -> ModesSettings {
     ModesSettings {
@@ -35,13 +33,14 @@ fn of_ring(ring: &RingModel, backend: Backend) -> Vec<Mode> {
     found.unwrap().modes
 }
 
-/// Modes with stiffness of a bearing with this outer ring about its equilibrium.
+/// Modes of a bearing with this outer ring about its equilibrium.
 fn of_bearing(ring: RingModel, backend: Backend) -> Vec<Mode> {
     let model = bearing(ring, backend);
-    let settings = settings(WITH_BALLS, backend);
+    let settings = settings(NUMBER, backend);
     let found = bearing_modes(&model, &equilibrium(&model), settings, &mut |_| ());
-    let elastic = found.unwrap().modes.into_iter().filter(|mode| !mode.is_rigid);
-    elastic.take(NUMBER).collect()
+    let modes = found.unwrap().modes;
+    assert!(modes.iter().all(|mode| !mode.is_rigid));
+    modes
 }
 
 /// The outer ring in a tube that moves by `n` harmonics and its modes below a frequency, Hz.

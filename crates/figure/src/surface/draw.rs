@@ -8,7 +8,7 @@ use crate::canvas::{Canvas, Drawn, units, write};
 use crate::layout::Span;
 use crate::marks::Pen;
 use crate::page::{LINE_WIDTH, Rect, TEXT, TICK};
-use crate::palette;
+use crate::palette::{self, Map};
 use crate::text::Weight;
 use crate::triangles::{LEVELS, bands, level_of};
 
@@ -18,6 +18,7 @@ const SEAM: u32 = 8;
 /// Draws the cells, equal neighbours in one piece, and the colour bar with its labels.
 pub(crate) fn draw_surface(surface: &Surface, bar: &(Rect, Span), pen: &Pen, canvas: &Canvas) -> Drawn {
     let (bar, span) = bar;
+    let colour = |level: usize| palette::on_map(surface.map, level as f64 / (LEVELS - 1) as f64);
     for triangle in &surface.triangles {
         for (level, part) in bands(triangle, span.range) {
             let corners: Vec<_> = part.iter().filter_map(|&p| pen.pixel(p)).map(units).collect();
@@ -54,17 +55,18 @@ pub(crate) fn draw_surface(surface: &Surface, bar: &(Rect, Span), pen: &Pen, can
     } else {
         1.0
     };
-    draw_bar(bar, span, brightest, canvas)
+    draw_bar(bar, span, (surface.map, brightest), canvas)
 }
 
-fn draw_bar(bar: &Rect, span: &Span, brightest: f64, canvas: &Canvas) -> Drawn {
+/// Draws the bar of a map up to a part of it.
+fn draw_bar(bar: &Rect, span: &Span, (map, brightest): (Map, f64), canvas: &Canvas) -> Drawn {
     let height = bar.bottom - bar.top;
     for level in 0..LEVELS {
         let y = |l: usize| bar.bottom - height * l as f64 / LEVELS as f64;
         let below = (y(level) + 0.5).min(bar.bottom);
         let corners = [units([bar.left, y(level + 1)]), units([bar.right, below])];
         let part = brightest * level as f64 / (LEVELS - 1) as f64;
-        canvas.draw(&Rectangle::new(corners, palette::of_part(part).filled()))?;
+        canvas.draw(&Rectangle::new(corners, palette::on_map(map, part).filled()))?;
     }
     let [low, high] = span.range;
     for (place, text) in &span.ticks.labelled {
@@ -81,8 +83,4 @@ fn draw_bar(bar: &Rect, span: &Span, brightest: f64, canvas: &Canvas) -> Drawn {
         )?;
     }
     Ok(())
-}
-
-fn colour(level: usize) -> RGBColor {
-    palette::of_part(level as f64 / (LEVELS - 1) as f64)
 }

@@ -4,6 +4,7 @@ pub(crate) mod draw;
 
 use crate::axis::Axis;
 use crate::error::FigureError;
+use crate::palette::Map;
 use crate::triangles::Triangle;
 
 /// Values of a grid of rectangles, or of triangles.
@@ -21,7 +22,12 @@ pub struct Surface {
     triangles: Vec<Triangle>,
     /// Whether it is no area, but the colours of the shaded series.
     pub(crate) is_of_series: bool,
+    /// Colours of the values.
+    pub(crate) map: Map,
 }
+
+/// Share of the largest size that values on the other side of zero must reach to have colours of their own.
+const BOTH_SIGNS: f64 = 1e-3;
 
 impl Surface {
     /// A surface of `values`, `[n_y][n_x]`, over rectangles between the edges, `[n_x + 1]` and `[n_y + 1]`.
@@ -46,6 +52,7 @@ impl Surface {
             values,
             triangles: Vec::new(),
             is_of_series: false,
+            map: Map::Sequential,
         })
     }
 
@@ -58,6 +65,7 @@ impl Surface {
             values: Vec::new(),
             triangles,
             is_of_series: false,
+            map: Map::Sequential,
         }
     }
 
@@ -67,6 +75,22 @@ impl Surface {
             is_of_series: true,
             ..Surface::of_triangles(value, Vec::new())
         }
+    }
+
+    /// The same in colours that part at zero, blue below and red above, where values have both signs: equal sizes are
+    /// equally strong, and the bar reaches as far to both sides.
+    pub fn parted_at_zero(mut self) -> Surface {
+        let finite = |value: &f64| value.is_finite();
+        let [low, high] = self
+            .values()
+            .filter(finite)
+            .fold([0.0f64; 2], |[low, high], x| [low.min(x), high.max(x)]);
+        let most = high.max(-low);
+        if high.min(-low) > BOTH_SIGNS * most {
+            self.value = self.value.including(-most).including(most);
+            self.map = Map::Diverging;
+        }
+        self
     }
 
     /// All places along x (0) or y (1).
