@@ -22,7 +22,7 @@ use crate::seat::tied;
 /// Steps between files up to which files wait for the disk.
 const OFTEN: u64 = 10;
 
-/// Functions of a seat as the mount of a moving ring, with their dofs and columns, bytes per function and node, measured.
+/// Functions of a seat as the mount of a moving ring: dofs and columns, bytes per function and node, measured.
 const MOUNT_BYTES: usize = 40;
 
 /// Memory of both rings at rest and in motion: of a rigid ring None and Some(None).
