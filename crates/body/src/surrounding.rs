@@ -48,7 +48,7 @@ pub struct Surrounding {
     /// What loads on all of it do, where a scene asks for any.
     pub loads: Option<UnitLoads>,
     /// Bytes of K.
-    matrix_bytes: usize,
+    pub(crate) matrix_bytes: usize,
     /// Wall time of assembly, factor and columns, s.
     pub seconds: f64,
     pub(crate) free: Vec<usize>,
@@ -169,21 +169,17 @@ impl Surrounding {
             body: self.name.clone(),
             source,
         };
-        let free = |of: &CsMat<f64>| solver::restrict(of, &self.free);
-        let stiffness = fem::assemble_stiffness(mesh, material).map_err(fem)?;
-        let mass = fem::assemble_mass(mesh, material).map_err(fem)?;
-        Ok(Some(Cow::Owned([free(&stiffness), free(&mass)])))
+        // The matrix of all dofs goes before the next one is made.
+        let free = |of: CsMat<f64>| solver::restrict(&of, &self.free);
+        let stiffness = free(fem::assemble_stiffness(mesh, material).map_err(fem)?);
+        let mass = free(fem::assemble_mass(mesh, material).map_err(fem)?);
+        Ok(Some(Cow::Owned([stiffness, mass])))
     }
 
-    /// Bytes that it takes for a while: assembly and factorisation, or where its `modes` are found the columns of the
-    /// seats twice, and K and M. Multiples of K; with 20 and 48 k dofs the forecasts of whole runs were 4 to 26 % above
-    /// what was measured.
-    pub fn making_bytes(&self, modes: bool) -> usize {
-        let columns = self.n_functions() * self.free.len() * size_of::<f64>();
-        match modes {
-            true => 2 * columns + 6 * self.matrix_bytes,
-            false => 4 * self.matrix_bytes,
-        }
+    /// Bytes of K and M of the free dofs that a body of matrices keeps.
+    pub(crate) fn own_matrix_bytes(&self) -> usize {
+        let entries = self.matrices.iter().flatten().map(CsMat::nnz).sum::<usize>();
+        entries * (size_of::<f64>() + size_of::<usize>())
     }
 
     /// Number of functions of all seats.
@@ -310,7 +306,8 @@ impl Surrounding {
     fn flexibility_of_seats(&self) -> Vec<f64> {
         let n = self.n_functions();
         let columns = |chunk: &[(usize, usize)]| -> Vec<f64> {
-            let columns = self.solved_units(chunk);
+            let mut columns = vec![0.0; self.free.len() * chunk.len()];
+            self.solve_units(chunk, &mut columns);
             let mut measured = Vec::with_capacity(n * chunk.len());
             let mut field = vec![0.0; self.n_dofs];
             for column in columns.chunks_exact(self.free.len()) {
@@ -338,27 +335,29 @@ impl Surrounding {
         self.seats.iter().enumerate().flat_map(of_seat).collect()
     }
 
-    /// K^-1 of unit forces on some functions, on free dofs, column-major.
-    fn solved_units(&self, functions: &[(usize, usize)]) -> Vec<f64> {
+    /// K^-1 of unit forces on some functions, on free dofs, column-major into `columns`.
+    fn solve_units(&self, functions: &[(usize, usize)], columns: &mut [f64]) {
         let mut field = vec![0.0; self.n_dofs];
-        let mut loads = Vec::with_capacity(self.free.len() * functions.len());
-        for &(seat, function) in functions {
+        let loads = columns.chunks_exact_mut(self.free.len());
+        for (&(seat, function), load) in functions.iter().zip(loads) {
             field.fill(0.0);
             self.seats[seat].add_unit_load(function, 1.0, &mut field);
-            loads.extend(self.free.iter().map(|&dof| field[dof]));
+            load.iter_mut()
+                .zip(&self.free)
+                .for_each(|(f, &dof)| *f = field[dof]);
         }
-        self.factor.solve(&mut loads, functions.len());
-        loads
+        self.factor.solve(columns, functions.len());
     }
 
     /// K^-1 Phi of all functions, on free dofs, column-major.
     pub(crate) fn seat_columns(&self) -> Vec<f64> {
         let owners = self.owners();
-        let columns: Vec<_> = owners
-            .par_chunks(BLOCK)
-            .map(|chunk| self.solved_units(chunk))
-            .collect();
-        columns.concat()
+        let mut columns = vec![0.0; self.free.len() * owners.len()];
+        columns
+            .par_chunks_mut(BLOCK * self.free.len())
+            .zip(owners.par_chunks(BLOCK))
+            .for_each(|(columns, chunk)| self.solve_units(chunk, columns));
+        columns
     }
 
     /// A displacement of the free dofs on all of them.

@@ -14,32 +14,34 @@ use crate::surrounding::Surrounding;
 const AT_A_TIME: usize = 32;
 
 impl Surrounding {
-    /// The forms of a body that a shaft carries, of its modes and the columns K^-1 Phi of its seats.
+    /// The forms of a body that a shaft carries, of its modes and the columns K^-1 Phi of its seats, which go when they
+    /// are no longer needed.
     pub(crate) fn frame_forms(
         &self,
         (mesh, material): (&Mesh, &Material),
         modes: &BodyModes,
-        columns: &[f64],
+        columns: Vec<f64>,
     ) -> Result<FrameForms, SurroundingError> {
+        let (n, n_dofs) = (modes.n(), self.n_dofs);
+        let numbers: Vec<usize> = (0..n).collect();
+        let mut fields = vec![0.0; n * n_dofs];
+        fields
+            .par_chunks_mut(AT_A_TIME * n_dofs)
+            .zip(numbers.par_chunks(AT_A_TIME))
+            .for_each(|(fields, block)| self.fields_of_oscillators(block, modes, &columns, fields));
+        drop(columns);
         let mass = fem::assemble_mass(mesh, material).map_err(|source| SurroundingError::Fem {
             body: self.name.clone(),
             source,
         })?;
-        let (n, n_dofs) = (modes.n(), self.n_dofs);
-        let numbers: Vec<usize> = (0..n).collect();
-        let fields: Vec<f64> = numbers
-            .par_chunks(AT_A_TIME)
-            .map(|block| self.fields_of_oscillators(block, modes, columns))
-            .collect::<Vec<_>>()
-            .concat();
         let form = |turn: fn([f64; 3]) -> [f64; 3]| -> Vec<f64> {
             let block = |fields_of: &[f64]| -> Vec<f64> {
-                let moved: Vec<f64> = fields_of
-                    .as_chunks::<3>()
+                let mut moved = fields_of.to_vec();
+                moved
+                    .as_chunks_mut::<3>()
                     .0
-                    .iter()
-                    .flat_map(|u| turn(*u))
-                    .collect();
+                    .iter_mut()
+                    .for_each(|u| *u = turn(*u));
                 let k = moved.len() / n_dofs;
                 inner_products(n_dofs, &fields, n, &solver::products(&mass, &moved, k), k)
             };
@@ -72,12 +74,13 @@ impl Surrounding {
                 body: self.name.clone(),
                 source,
             })?;
-        let field = |i: usize| {
+        let mut fields = vec![0.0; n * self.n_dofs];
+        let each = fields.par_chunks_mut(self.n_dofs).enumerate();
+        each.for_each(|(i, field)| {
             let mut unit = vec![0.0; modes.n()];
             unit[i] = 1.0;
-            self.moved(modes, &unit)
-        };
-        let fields = (0..n).into_par_iter().map(field).collect::<Vec<_>>().concat();
+            field.copy_from_slice(&self.moved(modes, &unit));
+        });
         let moved = solver::products(&azimuthal, &fields, n);
         let columns = inner_products(self.n_dofs, &fields, n, &moved, n);
         // Skew to the last bit, so that it does no work.
@@ -85,8 +88,8 @@ impl Surrounding {
         Ok((0..n * n).map(|k| entry(k / n, k % n)).collect())
     }
 
-    /// Displacements of all dofs of a block of oscillators, `[block][n_dofs]` flat.
-    fn fields_of_oscillators(&self, block: &[usize], modes: &BodyModes, columns: &[f64]) -> Vec<f64> {
+    /// Displacements of all dofs of a block of oscillators, into `fields`, `[block][n_dofs]` flat.
+    fn fields_of_oscillators(&self, block: &[usize], modes: &BodyModes, columns: &[f64], fields: &mut [f64]) {
         let (rows, n_dofs) = (self.free.len(), self.n_dofs);
         let (m, n_fixed) = (columns.len() / rows, modes.n_fixed);
         let [lam, shares] = [(&modes.forces, m), (&modes.shares, n_fixed)].map(|(of, width)| {
@@ -96,15 +99,13 @@ impl Surrounding {
         let mut free = linear_combinations(rows, columns, m, &lam, block.len());
         let own = linear_combinations(rows, &modes.fixed, n_fixed, &shares, block.len());
         free.iter_mut().zip(own).for_each(|(u, w)| *u += w);
-        let mut all = vec![0.0; n_dofs * block.len()];
         for ((&i, field), free) in block
             .iter()
-            .zip(all.chunks_exact_mut(n_dofs))
+            .zip(fields.chunks_exact_mut(n_dofs))
             .zip(free.chunks_exact(rows))
         {
             self.free.iter().zip(free).for_each(|(&dof, u)| field[dof] = *u);
             self.add_shaft_motion(modes.shaft_row(i), field);
         }
-        all
     }
 }

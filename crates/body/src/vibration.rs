@@ -33,13 +33,18 @@ use crate::rigid_part::RigidPart;
 use crate::surrounding::Surrounding;
 
 /// Modes that are looked for at first.
-const FIRST_SEARCH: usize = 12;
+pub(crate) const FIRST_SEARCH: usize = 12;
 /// Most modes with held seats.
 const MOST_MODES: usize = 384;
 /// Vectors of a block of the search.
 const BLOCK: usize = 4;
 /// Shapes of a block of products. Fixed, so that threads change no bit.
-const AT_A_TIME: usize = 32;
+pub(crate) const AT_A_TIME: usize = 32;
+
+/// How so many modes with held seats are looked for.
+pub(crate) fn search_settings(wanted: usize) -> LanczosSettings {
+    LanczosSettings::new(wanted, BLOCK)
+}
 
 impl Surrounding {
     /// The body as oscillators, with its modes of held seats up to a frequency, Hz.
@@ -68,12 +73,14 @@ impl Surrounding {
         let mut modes = reduced
             .oscillators(below_hz, n_fixed, fixed.vectors)
             .map_err(failed)?;
+        let flexibility = held.flexibility;
+        drop(matrices);
         if let (Some(_), Some((mesh, material))) = (&self.carried, &self.mesh) {
-            modes.frame = Some(Box::new(self.frame_forms((mesh, material), &modes, &columns)?));
+            modes.frame = Some(Box::new(self.frame_forms((mesh, material), &modes, columns)?));
         }
         let by_forces = |seats: &[f64]| {
             let mut forces = seats.to_vec();
-            held.flexibility.solve(&mut forces, 1);
+            flexibility.solve(&mut forces, 1);
             forces
         };
         modes.loads = self.modal_loads(&modes, &fixed.values, by_forces).map(Box::new);
@@ -114,7 +121,7 @@ impl HeldSeats<'_> {
         let most_pairs = self.n().saturating_sub(self.body.n_functions());
         let mut wanted = FIRST_SEARCH.min(most_pairs);
         loop {
-            let found = lowest_pairs(self, LanczosSettings::new(wanted, BLOCK), &mut |_| ());
+            let found = lowest_pairs(self, search_settings(wanted), &mut |_| ());
             let mut found = found.map_err(|source| SurroundingError::Modes {
                 body: self.body.name.clone(),
                 below_hz,

@@ -9,6 +9,7 @@
 use std::sync::Arc;
 
 use comm::Communicator;
+use contact::Side;
 use dynamics::modes::basis_sizes;
 use dynamics::{Model, MotionMemory, RingMemory, RingModel, forecast_motion_peak, forecast_peak};
 use scene::{Analysis, Modes};
@@ -17,6 +18,7 @@ use crate::failure::Failure;
 use crate::memory::{
     Bound, MOST_PER_NODE, bound, queued_steps, require, rings_at_once, rings_of, with_bodies,
 };
+use crate::seat::tied;
 
 /// Files and tables of a bearing after the first, bytes, measured on rigid rings.
 const BEARING_BYTES: usize = 2_400_000;
@@ -99,7 +101,7 @@ pub fn forecast_list(analysis: &Analysis, bearings: &[BearingMemory<'_>]) -> (us
     }
     let rest = program + lasting + making;
     let files = BEARING_BYTES * bearings.len().saturating_sub(1);
-    let with_all = |peak: usize| bearings.iter().fold(peak, |sum, b| with_bodies(sum, b.model)) + files;
+    let with_all = |peak: usize| with_bodies(peak, models_of(bearings)) + files;
     (with_all(rest), steps_of(analysis, bearings).map(with_all))
 }
 
@@ -161,9 +163,25 @@ pub fn forecast_modes_of_list(wanted: &Modes, bearings: &[BearingMemory<'_>]) ->
             }
         }
     }
-    bearings
+    sum += bearings
         .iter()
-        .fold(sum, |sum, bearing| with_bodies(sum, bearing.model))
+        .map(|bearing| tied_bytes(bearing.model))
+        .sum::<usize>();
+    with_bodies(sum, models_of(bearings))
+}
+
+/// Copies of a block of vectors that a ring in a body takes at a time, beside those of all rings, measured.
+const TIED_BLOCKS: usize = 8;
+
+/// What rings in bodies take in the search for modes on the way through the joint, bytes: blocks of vectors.
+fn tied_bytes(model: &Model) -> usize {
+    let rings = Side::BOTH.into_iter().filter_map(|side| tied(model, side));
+    let n_dofs: usize = rings.map(|(ring, _)| ring.mesh.n_dofs()).sum();
+    TIED_BLOCKS * model.geometry.n_balls * n_dofs * size_of::<f64>()
+}
+
+fn models_of<'m>(bearings: &[BearingMemory<'m>]) -> impl Iterator<Item = &'m Model> {
+    bearings.iter().map(|bearing| bearing.model)
 }
 
 /// Vectors of the search for modes of a list, its restart included, bytes.

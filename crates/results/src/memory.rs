@@ -4,7 +4,7 @@ use std::fmt;
 use std::path::Path;
 
 use anyhow::anyhow;
-use body::SeatTie;
+use body::{BodyModes, SeatTie};
 use comm::Communicator;
 use contact::Side;
 use dynamics::motion::Motion;
@@ -21,6 +21,9 @@ use crate::seat::tied;
 
 /// Steps between files up to which files wait for the disk.
 const OFTEN: u64 = 10;
+
+/// Functions of a seat as the mount of a moving ring: dofs and columns, bytes per function and node, measured.
+const MOUNT_BYTES: usize = 40;
 
 /// Memory of both rings at rest and in motion: of a rigid ring None and Some(None).
 pub(crate) type RingsOfModel = ([Option<RingMemory>; 2], [Option<Option<MotionMemory>>; 2]);
@@ -115,33 +118,44 @@ pub fn forecast(
 
 /// The peak of rings with what is there besides.
 fn beside_rings(rings: usize, model: &Model) -> usize {
-    with_bodies(with_surfaces(rings, model), model)
+    with_bodies(with_surfaces(rings, model), [model])
 }
 
-/// The peak of the rest with the bodies of the rings, which are made before it.
-pub(crate) fn with_bodies(rest: usize, model: &Model) -> usize {
-    let sides = Side::BOTH.into_iter();
-    sides.fold(rest, |rest, side| with_body(rest, model, side))
+/// The peak of the rest with the bodies of the rings of some bearings. They are made before it, one after the other.
+pub(crate) fn with_bodies<'m>(rest: usize, models: impl IntoIterator<Item = &'m Model>) -> usize {
+    let (mut kept, mut making, mut left) = (0, 0, 0);
+    let models = models.into_iter();
+    let ties = models.flat_map(|model| Side::BOTH.into_iter().filter_map(|side| tied(model, side)));
+    for (ring, tie) in ties {
+        kept += joint_bytes(ring, tie);
+        // A body that carries several bearings is made once.
+        let Some(body) = tie.body.as_ref().filter(|_| tie.seat == 0) else {
+            continue;
+        };
+        let modes = tie.modes.as_ref().map(|modes| &*modes.of_body);
+        kept += body.kept_bytes() + modes.map_or(0, BodyModes::bytes);
+        let made = body.making_bytes(modes, rings_at_once());
+        making = making.max(made.most());
+        left += made.left;
+    }
+    kept + (rest + left).max(match making {
+        0 => 0,
+        making => making + forecast_peak([None, None], 1),
+    })
 }
 
-/// The functions of a seat on the side of its ring: of its statics, or those of a mount beside what a motion counts.
+/// The functions of a seat on the side of its ring, at rest and as the mount of a ring that moves, and the matrices of
+/// the joint.
 fn joint_bytes(ring: &RingModel, tie: &SeatTie) -> usize {
-    let nodes = ring.mesh.group_nodes(ring.held_group).len();
-    tie.space.basis.n_functions() * nodes * size_of::<f64>()
-}
-
-fn with_body(rest: usize, model: &Model, side: Side) -> usize {
-    let Some((ring, tie)) = tied(model, side) else {
-        return rest;
-    };
-    let rest = rest + joint_bytes(ring, tie);
-    // A body that carries several bearings is made once.
-    let Some(body) = tie.body.as_ref().filter(|_| tie.seat == 0) else {
-        return rest;
-    };
-    let modes = tie.modes.as_ref().map_or(0, |modes| modes.of_body.bytes());
-    let kept = body.bytes + modes;
-    kept + rest.max(body.making_bytes(modes > 0))
+    let (nodes, n) = (
+        ring.mesh.group_nodes(ring.held_group).len(),
+        tie.space.basis.n_functions(),
+    );
+    let at_rest = n * nodes * size_of::<f64>() + body::joint_bytes(n);
+    match tie.modes {
+        Some(_) => at_rest + MOUNT_BYTES * n * nodes,
+        None => at_rest,
+    }
 }
 
 /// More memory than a ring takes for each of its nodes, bytes: five times that of a sparse factor of 17 k nodes.

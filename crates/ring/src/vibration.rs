@@ -385,7 +385,7 @@ impl VibratingRings {
             product(ring, &own)
         };
         let products: Vec<Vec<f64>> = self.rings.par_iter().map(of_ring).collect();
-        let mut rings = Vec::new();
+        let mut rings = Vec::with_capacity(products.iter().map(Vec::len).sum());
         for column in 0..n_vectors {
             for (ring, product) in self.rings.iter().zip(&products) {
                 rings.extend_from_slice(&product[ring.n() * column..ring.n() * (column + 1)]);

@@ -2,6 +2,7 @@
 
 mod loads;
 mod matrices;
+mod memory;
 mod reference;
 mod vibration;
 mod wrong_matrices;

@@ -13,6 +13,11 @@ const DEPENDENT: f64 = 1e-11;
 /// orthonormal by Cholesky. What that leaves, round-off over this, goes the second time.
 const INDEPENDENT: f64 = 1e-8;
 
+/// Entries of A that products A C take at a time: each thread keeps a copy of so many, else of all of A.
+const PACKED_AT_ONCE: usize = 1 << 20;
+/// Rows are taken in multiples of what the innermost loops take together.
+const ROWS_OF_KERNEL: usize = 64;
+
 /// A^T B, column-major `[n_a][n_b]`, of column-major A `[n][n_a]` and B `[n][n_b]`.
 pub fn inner_products(n: usize, a: &[f64], n_a: usize, b: &[f64], n_b: usize) -> Vec<f64> {
     let mut product = vec![0.0; n_a * n_b];
@@ -42,14 +47,17 @@ pub fn add_combinations(
     (c, n_c): (&[f64], usize),
     factor: f64,
 ) {
-    matmul(
-        MatMut::from_column_major_slice_mut(b, n, n_c),
-        Accum::Add,
+    let (a, c) = (
         MatRef::from_column_major_slice(a, n, n_a),
         MatRef::from_column_major_slice(c, n_a, n_c),
-        factor,
-        Par::Seq,
     );
+    let mut b = MatMut::from_column_major_slice_mut(b, n, n_c);
+    let rows = (PACKED_AT_ONCE / n_a.max(1)).next_multiple_of(ROWS_OF_KERNEL);
+    for start in (0..n).step_by(rows) {
+        let n_rows = rows.min(n - start);
+        let of_rows = b.as_mut().subrows_mut(start, n_rows);
+        matmul(of_rows, Accum::Add, a.subrows(start, n_rows), c, factor, Par::Seq);
+    }
 }
 
 /// Vectors that are orthonormal in M, column-major `[n][m]`.
@@ -316,6 +324,28 @@ mod tests {
                     .iter()
                     .zip(problem.mass(&found.vectors, width))
                     .all(|(a, b)| (a - b).abs() < 1e-12)
+            );
+        }
+    }
+
+    /// Wrong: rows of a combination at the border of two blocks would be left out, or added twice.
+    #[test]
+    fn combinations_of_many_rows_are_those_of_each_row() {
+        let (n_a, n_c) = (300, 3);
+        let n = 2 * (PACKED_AT_ONCE / n_a) + ROWS_OF_KERNEL + 5;
+        let number = |k: usize| (0.7 * k as f64).sin();
+        let a: Vec<f64> = (0..n * n_a).map(number).collect();
+        let c: Vec<f64> = (0..n_a * n_c).map(|k| number(3 * k + 1)).collect();
+        let mut b = vec![1.0; n * n_c];
+        add_combinations(n, &mut b, (&a, n_a), (&c, n_c), -2.0);
+        for (k, found) in b.iter().enumerate() {
+            let (row, column) = (k % n, k / n);
+            let sum: f64 = (0..n_a).map(|j| a[n * j + row] * c[n_a * column + j]).sum();
+            let expected = 1.0 - 2.0 * sum;
+            // A sum of 300 terms of up to one.
+            assert!(
+                (found - expected).abs() < 1e-12,
+                "{row} {column}: {found} {expected}"
             );
         }
     }
