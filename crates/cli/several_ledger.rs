@@ -43,6 +43,10 @@ impl LedgerWatch {
         }
         let (defect, relative) = (next.ledger.defect().abs(), next.ledger.relative_defect().abs());
         let counts = relative > self.worst.max(least);
+        if relative > dynamic.ledger_tolerance {
+            // Nothing older may excuse what stops the run.
+            self.round_off.clear();
+        }
         if !counts || self.is_round_off(defect, 0..motion.bearings.len(), (motion, next))? {
             return Ok(());
         }

@@ -13,6 +13,7 @@ use std::sync::Arc;
 use body::{BesideRing, BodyLoad, SeatBasis, SeatFunctions, SeatTie, SeatTraction};
 use comm::{Communicator, print};
 use contact::Side;
+use dynamics::frame::turn;
 use dynamics::motion::{Motion, MotionState};
 use dynamics::stiffness::N_SHAFT;
 use dynamics::{Model, RingModel, StaticSolution};
@@ -108,12 +109,14 @@ fn finished(state: Option<SeatState>, to: SeatFolder<'_>) -> Result<Option<SeatS
 pub(crate) const ON_SHAFT: Side = Side::BOTH[0];
 
 /// Mean motion of the inner ring's seat beside the rigid motion of the shaft whose body it sits on, at the axis point,
-/// in the frame of the bearing, m and rad; None where the inner ring is on no such body. Seats were resolved before.
+/// in the frame of the bearing, which stands in space, m and rad; None where the inner ring is on no such body. Seats
+/// were resolved before.
 pub fn beside_shaft_at_rest(model: &Model, solution: &StaticSolution) -> Option<[f64; N_SHAFT]> {
     let (ring, tie) = on_shaft(model)?;
     let functions = ring.seat_functions(ON_SHAFT.name()).ok().flatten()?;
     let field = solution.elastic[ON_SHAFT.index()].as_ref()?;
-    Some(at_axis_point(model, tie, &functions.measure(field)))
+    let beside = at_axis_point(model, tie, &functions.measure(field));
+    Some(turn(beside, solution.pose.frame_angle(ON_SHAFT)))
 }
 
 /// The same in a motion.
@@ -121,7 +124,8 @@ pub fn beside_shaft_in_motion(motion: &Motion<'_>, state: &MotionState) -> Optio
     let (_, tie) = on_shaft(motion.model())?;
     let moved = state.rings[ON_SHAFT.index()].as_ref()?.body()?;
     let seat = motion.tied(ON_SHAFT)?.seat_beside_shaft(moved)?;
-    Some(at_axis_point(motion.model(), tie, &seat))
+    let beside = at_axis_point(motion.model(), tie, &seat);
+    Some(turn(beside, motion.angle_of_frame(state, ON_SHAFT)))
 }
 
 /// The inner ring on the body of a shaft.
@@ -129,6 +133,7 @@ fn on_shaft(model: &Model) -> Option<(&RingModel, &Arc<SeatTie>)> {
     tied(model, ON_SHAFT).filter(|(_, tie)| tie.carried().is_some())
 }
 
+/// In the frame of the ring, which turns.
 fn at_axis_point(model: &Model, tie: &SeatTie, motion: &[f64]) -> [f64; N_SHAFT] {
     let [_, z] = model.geometry.groove_centre(ON_SHAFT);
     let [ux, uy, uz, rx, ry, _] = tie.space.mean_motion(motion, z);

@@ -443,9 +443,12 @@ impl BodyFactor {
         let increments: Vec<f64> = modes.squares().iter().enumerate().map(increment).collect();
         let end: Vec<f64> = x.iter().zip(&increments).map(|(x, d)| x + d).collect();
         let shaft = self.body.on_shaft();
+        let mut seat = modes.motion(&end);
+        // A rigid body stands.
+        seat.resize(self.body.n_functions(), 0.0);
         BodyStep {
             increments,
-            seat: modes.motion(&end),
+            seat,
             shaft: shaft.map_or_else(Default::default, |shares| {
                 [x, &end].map(|at| shares.motion(at).to_vec())
             }),
