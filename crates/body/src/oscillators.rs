@@ -203,16 +203,19 @@ impl SeatModes {
 
     /// Motion of the functions of the seat, m per unit of each oscillator.
     pub fn rows(&self) -> impl Iterator<Item = &[f64]> {
-        let BodyModes { seat, .. } = &*self.of_body;
-        let width = seat.len().checked_div(self.n()).unwrap_or(0);
-        seat.chunks_exact(width.max(1)).map(|row| &row[self.own.clone()])
+        (0..self.n()).map(|i| self.row(i))
+    }
+
+    fn row(&self, i: usize) -> &[f64] {
+        let seat = &self.of_body.seat;
+        let width = seat.len() / self.n();
+        &seat[width * i..][self.own.clone()]
     }
 
     /// Motion of the functions of the seat under oscillators, m; of a rigid body none.
     pub fn motion(&self, oscillators: &[f64]) -> Vec<f64> {
         let mut sum = vec![0.0; self.own.len()];
-        let rows: Vec<&[f64]> = self.rows().collect();
-        add_rows(&mut sum, |i| rows[i], &oscillators[..rows.len()]);
+        add_rows(&mut sum, |i| self.row(i), &oscillators[..self.n()]);
         sum
     }
 
