@@ -245,12 +245,13 @@ impl dyn ElasticBody + '_ {
         }
     }
 
-    /// Linear momentum, kg m/s, and moment of momentum about the point z = 0 of the mesh's axis, kg m^2/s, at the
-    /// undeformed places of the nodes.
+    /// Linear momentum, kg m/s, and moment of momentum about the point z = 0 of the mesh's axis, kg m^2/s.
     pub fn momentum(&self, state: &RingState) -> [[f64; 3]; 2] {
         let p = self.matrices().nodal_mass_product(&self.nodal(state.velocity()));
+        let w = self.nodal(state.displacement());
         let sums = self.held().places.sum(|node, x| {
             let p = &p[3 * node..3 * node + 3];
+            let x = [0, 1, 2].map(|c| x[c] + w[3 * node + c]);
             let moment = [0, 1, 2].map(|i| {
                 let (j, k) = ((i + 1) % 3, (i + 2) % 3);
                 x[j] * p[k] - x[k] * p[j]
@@ -353,8 +354,20 @@ pub(crate) fn frame_load(
     turn: FrameTurn,
     [w, v]: [Vec<f64>; 2],
 ) -> Vec<f64> {
-    let (speed, acceleration) = (turn.speed, turn.acceleration);
     let (u, v) = (held.coordinates.expand(&w), held.coordinates.expand(&v));
+    let field = frame_inertia(held, turn, [&u, &v]);
+    let mut load = matrices.nodal_mass_product(&field);
+    if let Some(stress) = matrices.nodal_stress_product(&u) {
+        load.iter_mut()
+            .zip(&stress)
+            .for_each(|(load, f)| *load -= turn.speed * turn.speed * f);
+    }
+    held.coordinates.reduce(&load)
+}
+
+/// Inertia of a turning frame per mass, m/s^2, of nodal displacements and velocities in it.
+pub(crate) fn frame_inertia(held: &HeldRing, turn: FrameTurn, [u, v]: [&[f64]; 2]) -> Vec<f64> {
+    let (speed, acceleration) = (turn.speed, turn.acceleration);
     let mut field = vec![0.0; u.len()];
     // Of a ring that ranks share, the product takes the field at the nodes of own sectors only.
     for (i, place) in held.places.positions().kept() {
@@ -364,13 +377,7 @@ pub(crate) fn frame_load(
         f[0] = speed * speed * x + 2.0 * speed * vy + acceleration * y;
         f[1] = speed * speed * y - 2.0 * speed * vx - acceleration * x;
     }
-    let mut load = matrices.nodal_mass_product(&field);
-    if let Some(stress) = matrices.nodal_stress_product(&u) {
-        load.iter_mut()
-            .zip(&stress)
-            .for_each(|(load, f)| *load -= speed * speed * f);
-    }
-    held.coordinates.reduce(&load)
+    field
 }
 
 /// Coordinates and mount of a held ring.

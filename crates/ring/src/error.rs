@@ -32,6 +32,14 @@ pub enum RingError {
         /// The first difference.
         reason: String,
     },
+    /// A free ring without an inertia against all of its rigid motions.
+    #[error("the mass of the {side} ring does not resist all of its rigid motions: {source}")]
+    RigidMass {
+        /// `inner` or `outer`.
+        side: &'static str,
+        /// Why not.
+        source: DenseError,
+    },
     /// Harmonics do not give the modes of a ring with a defect.
     #[error(
         "the {side} ring is rotationally periodic only up to a defect, whose natural modes solver.backend \

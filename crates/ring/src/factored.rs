@@ -10,6 +10,7 @@ use body::SeatFunctions;
 
 use crate::body::ElasticBody;
 use crate::error::RingError;
+use crate::free::{FreeFactor, is_free};
 use crate::integrator::StepScheme;
 use crate::step::StepFactor;
 
@@ -53,7 +54,11 @@ impl FactoredBody {
             return Ok(factor);
         }
         // Nobody waits for a factor under way. A second thread that makes it too makes the same bits.
-        let factor: Arc<dyn StepFactor> = self.body.clone().step_factor(scheme)?.into();
+        let factor = self.body.clone().step_factor(scheme)?;
+        let factor: Arc<dyn StepFactor> = match is_free(&*self.body) {
+            true => Arc::new(FreeFactor::new(self.body.clone(), factor, scheme)?),
+            false => factor.into(),
+        };
         if let Some(earlier) = known() {
             return Ok(earlier);
         }

@@ -11,6 +11,7 @@ pub mod error;
 pub mod expansion;
 pub mod factored;
 pub mod first_frequency;
+mod free;
 mod harmonic;
 mod inertia;
 pub mod integrator;

@@ -232,7 +232,7 @@ impl Motion<'_> {
     }
 
     /// Linear momentum, kg m/s, and moment of momentum about the groove's centre on the axis, kg m^2/s, of a flexible
-    /// ring in its own frame, with its nodes at their undeformed places.
+    /// ring in its own frame.
     pub fn ring_momentum(&self, state: &MotionState, side: Side) -> Option<[[f64; 3]; 2]> {
         let moving = self.rings[side.index()].as_ref()?;
         Some(moving.body.momentum(state.rings[side.index()].as_ref()?))
