@@ -22,6 +22,10 @@ const BODY_TOLERANCE: f64 = 1e-9;
 /// The same that may be left where rounds no longer get on, and after how many of them.
 const BODY_FLOOR: f64 = 1e-7;
 const BODY_PATIENCE: usize = 3;
+/// Tolerance of the forces in a round over the change of the forces on the bodies in the one before, and the most. The
+/// last round has the tolerance of the scene.
+const SHARE_OF_CHANGE: f64 = 1e-2;
+const LOOSEST: f64 = 1e-4;
 /// Rounds of these before giving up.
 const MOST_BODY_ROUNDS: usize = 100;
 
@@ -248,7 +252,9 @@ impl AssemblySolver {
             }
             None => vec![0.0; assembly.shaft.n()],
         };
-        let found = self.settle_in_bodies(assembly, poses, &at, start);
+        let asked = AskedTolerances::of(assembly);
+        let found = self.settle_in_bodies(assembly, poses, &at, (start, &asked));
+        asked.set(assembly, 0.0);
         if let (Err(_), Some(start)) = (&found, start) {
             // What failed is forgotten: the bearings are those of the last solution again.
             self.tell(&start.on_bodies, assembly);
@@ -268,7 +274,7 @@ impl AssemblySolver {
         assembly: &mut Assembly,
         poses: &[Pose],
         at: &[f64],
-        start: Option<&AssemblyStart>,
+        (start, asked): (Option<&AssemblyStart>, &AskedTolerances),
     ) -> Result<AssemblySolution, AssemblyError> {
         let mut forces = match start {
             Some(start) => start.on_bodies.clone(),
@@ -278,8 +284,10 @@ impl AssemblySolver {
         let (mut before, mut history): (Option<SettledAssembly>, Vec<f64>) = (None, Vec::new());
         let mut iterations = 0;
         let limit = BODY_TOLERANCE.max(assembly.scales().tolerance);
+        let mut loose = if self.bodies.is_empty() { 0.0 } else { LOOSEST };
         loop {
             self.tell(&forces, assembly);
+            asked.set(assembly, loose);
             let at = before.as_ref().map_or(at, |(shaft, _)| &shaft.displacements);
             let starts: Option<Vec<&Displacements>> = match &before {
                 Some((_, bearings)) => Some(bearings.iter().map(|b| &b.displacements).collect()),
@@ -297,7 +305,8 @@ impl AssemblySolver {
             let largest = changes
                 .iter()
                 .fold(0.0, |most, c| if *c <= most { most } else { *c });
-            if largest <= limit || has_stalled(&history, largest) {
+            let is_last = largest <= limit || has_stalled(&history, largest);
+            if is_last && loose <= asked.least {
                 shaft.iterations = iterations;
                 return Ok(AssemblySolution {
                     bearings,
@@ -305,6 +314,11 @@ impl AssemblySolver {
                     on_bodies: forces,
                 });
             }
+            loose = if is_last {
+                0.0
+            } else {
+                LOOSEST.min(SHARE_OF_CHANGE * largest)
+            };
             history.push(largest);
             if history.len() == MOST_BODY_ROUNDS {
                 let body = changes.iter().position(|c| *c == largest).unwrap_or(0);
@@ -360,6 +374,34 @@ impl AssemblySolver {
         let found = supports.bearings.into_iter();
         let found = found.map(|bearing| bearing.last.expect("every bearing has answered"));
         Ok((settled, found.collect()))
+    }
+}
+
+/// Tolerances of forces that a scene asks for, by bearing.
+struct AskedTolerances {
+    forces: Vec<f64>,
+    /// The least of them.
+    least: f64,
+}
+
+impl AskedTolerances {
+    fn of(assembly: &Assembly) -> AskedTolerances {
+        let forces: Vec<f64> = assembly
+            .bearings
+            .iter()
+            .map(|b| b.model.tolerances.force)
+            .collect();
+        AskedTolerances {
+            least: forces.iter().copied().fold(f64::INFINITY, f64::min),
+            forces,
+        }
+    }
+
+    /// Gives the bearings theirs, or `loose` where that is more.
+    fn set(&self, assembly: &mut Assembly, loose: f64) {
+        for (bearing, force) in assembly.bearings.iter_mut().zip(&self.forces) {
+            bearing.model.tolerances.force = force.max(loose);
+        }
     }
 }
 
