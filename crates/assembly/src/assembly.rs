@@ -301,10 +301,7 @@ impl AssemblySolver {
             iterations += shaft.iterations;
             let pairs = forces.iter().zip(&found);
             let changes: Vec<f64> = pairs.map(|(x, g)| change(x, g)).collect();
-            // Not `f64::max`: what is no number is no small change.
-            let largest = changes
-                .iter()
-                .fold(0.0, |most, c| if *c <= most { most } else { *c });
+            let largest = largest(&changes);
             let is_last = largest <= limit || has_stalled(&history, largest);
             if is_last && loose <= asked.least {
                 shaft.iterations = iterations;
@@ -403,6 +400,13 @@ impl AskedTolerances {
             bearing.model.tolerances.force = force.max(loose);
         }
     }
+}
+
+/// Not `f64::max`: what is no number is no small change.
+fn largest(changes: &[f64]) -> f64 {
+    changes
+        .iter()
+        .fold(0.0, |most, c| if *c <= most { most } else { *c })
 }
 
 /// Change of forces over their size.

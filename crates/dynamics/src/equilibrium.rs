@@ -1,9 +1,8 @@
 //! Static equilibrium of bodies and contacts as they are: the minimum of the energy.
 //!
 //! The elastic energy of the rings is a positive quadratic form and that of the contacts convex, so the total energy is
-//! convex and its minimum is the equilibrium, but for tilts that are free: finite rotations bend the energy. Steps of
-//! Newton are capped, which makes any start safe: no load, huge load, unloaded balls. Cost: one dense factorisation of
-//! 2 n_balls (1 + rings) + 5 unknowns per iteration.
+//! convex but for finite rotations of free tilts, and its minimum is the equilibrium. Steps of Newton are capped, so any
+//! start is safe. Cost: one dense factorisation of 2 n_balls (1 + rings) + 5 unknowns per iteration.
 
 use contact::{BearingGeometry, Side};
 use dense::DenseError;
