@@ -2,7 +2,7 @@
 
 mod support;
 
-use contact::Side;
+use contact::{Meridian, Side};
 use dynamics::kinematics::Speed;
 use dynamics::motion::{Motion, MotionSettings, MotionState, StepCache};
 use dynamics::{ContactMode, Hold, Model, ShaftDof};
@@ -17,7 +17,7 @@ fn floating() -> Model {
     model.geometry.n_balls = 2;
     // Room between the balls and the inner ring, which stands where they lie on the bottom of its groove.
     model.geometry.inner_raceway_diameter -= 0.1e-3;
-    let back = model.geometry.ball_centre()[1] - model.geometry.groove_centre(Side::Inner)[1];
+    let back = model.geometry.ball_centre().axial - model.geometry.groove_centre(Side::Inner).axial;
     model.shaft = [0.0, 0.0, back, 0.0, 0.0].map(ShaftDof::Prescribed);
     model
 }
@@ -37,8 +37,8 @@ fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
     ]
 }
 
-fn in_space(v: [f64; 2], azimuth: f64) -> [f64; 3] {
-    [v[0] * azimuth.cos(), v[0] * azimuth.sin(), v[1]]
+fn in_space(v: Meridian, azimuth: f64) -> [f64; 3] {
+    [v.radial * azimuth.cos(), v.radial * azimuth.sin(), v.axial]
 }
 
 fn momentum(model: &Model, motion: &Motion<'_>, state: &MotionState) -> Momentum {
@@ -48,8 +48,8 @@ fn momentum(model: &Model, motion: &Motion<'_>, state: &MotionState) -> Momentum
     for ball in 0..2 {
         let azimuth = motion.ball_azimuth(ball, 0.0);
         let (x, v) = (state.balls[ball], state.ball_velocities[ball]);
-        let p = in_space([mass * v[0], mass * v[1]], azimuth);
-        let place = [centre[0] + x[0], centre[1] - groove[1] + x[1]];
+        let p = in_space(v.map(|v| mass * v), azimuth);
+        let place = centre + x - Meridian::new(0.0, groove.axial);
         let moment = cross(in_space(place, azimuth), p);
         for i in 0..3 {
             linear[i] += p[i];
@@ -72,25 +72,25 @@ fn free_balls_in_a_free_ring_keep_their_momentum() {
         unreachable!()
     };
     let mut state = motion.rest([0.0, 0.0, back, 0.0, 0.0], [0.0; 5]);
-    state.ball_velocities = vec![[0.5, 0.1], [0.2, -0.15]];
+    state.ball_velocities = [[0.5, 0.1], [0.2, -0.15]].map(Meridian::from).to_vec();
     state = motion.with_energies(state);
     let first = momentum(&model, &motion, &state);
     let scale = model.ball_mass() * 0.5;
-    let lever = model.geometry.ball_centre()[0] * scale;
+    let lever = model.geometry.ball_centre().radial * scale;
     let (mut hardest, mut worst, mut drift) = (0.0f64, [0.0f64; 3], [0.0; 3]);
     let mut cache = StepCache::default();
     for _ in 0..25 {
         let next = motion.step(&state, &mut cache).unwrap().0;
         for ball in 0..2 {
             let force = next.forces[2 * ball + 1];
-            hardest = hardest.max(force[0].hypot(force[1]));
+            hardest = hardest.max(force.norm());
             let azimuth = motion.ball_azimuth(ball, 0.0);
             let mean = motion.groove_motion(&state, &next, ball, Side::Outer).unwrap();
             let left_out = cross(in_space(mean, azimuth), in_space(force, azimuth));
             (0..3).for_each(|i| drift[i] += 2e-6 * left_out[i]);
         }
         assert!(
-            next.forces.iter().step_by(2).all(|f| *f == [0.0; 2]),
+            next.forces.iter().step_by(2).all(|f| f.norm() == 0.0),
             "the inner ring was struck"
         );
         state = next;
@@ -110,7 +110,7 @@ fn free_balls_in_a_free_ring_keep_their_momentum() {
         drift.iter().fold(0.0f64, |m, d| m.max(d.abs())) / lever
     );
     assert!(
-        hardest > 50.0 && state.forces.iter().all(|f| *f == [0.0; 2]),
+        hardest > 50.0 && state.forces.iter().all(|f| f.norm() == 0.0),
         "{hardest}: no impact and rebound"
     );
     assert!(worst[0] < 1e-12 && worst[1] < 1e-12, "{worst:?}");
