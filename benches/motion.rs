@@ -90,10 +90,10 @@ impl Writer {
                 )
             })
             .collect();
-        let [radius, z] = model.geometry.ball_centre();
+        let place = model.geometry.ball_centre();
         let centre = |ball: usize| {
             let (sin, cos) = model.geometry.azimuth(ball).sin_cos();
-            [radius * cos, radius * sin, z]
+            [place.radial * cos, place.radial * sin, place.axial]
         };
         let centres: Vec<[f64; 3]> = (0..model.geometry.n_balls).map(centre).collect();
         bodies.push(Body::balls(

@@ -86,16 +86,16 @@ fn touching(model: &Model, side: Side) -> [f64; 2] {
     let g = &model.geometry;
     let x = g.ball_centre();
     [
-        g.centre_radius(side) + side.sign() * g.touching_distance(side) - x[0],
-        -x[1],
+        g.centre_radius(side) + side.sign() * g.touching_distance(side) - x.radial,
+        -x.axial,
     ]
 }
 
 /// Both balls at a radial displacement, moving outwards with `speed`.
 fn thrown(motion: &Motion<'_>, at: [f64; 2], speed: f64) -> MotionState {
     let mut state = motion.rest([0.0; 5], [0.0; 5]);
-    state.balls = vec![at; 2];
-    state.ball_velocities = vec![[speed, 0.0]; 2];
+    state.balls = vec![at.into(); 2];
+    state.ball_velocities = vec![[speed, 0.0].into(); 2];
     // Nothing is pressed.
     state.ledger.hertz = 0.0;
     motion.with_energies(state)
@@ -121,7 +121,7 @@ fn hertz_impact(record: &mut Record) {
         260,
         |s| {
             approach = approach.max(s.approaches[1]);
-            if s.forces[1] != [0.0; 2] {
+            if s.forces[1].norm() != 0.0 {
                 contact += dt;
             }
         },
@@ -130,7 +130,7 @@ fn hertz_impact(record: &mut Record) {
     record.near("largest approach", approach, deepest, 2e-4);
     // The first and the last step touch for a part only.
     record.near("duration", contact, duration, 2.0 / 200.0);
-    record.near("speed after", course.last.ball_velocities[0][0], -speed, 1e-9);
+    record.near("speed after", course.last.ball_velocities[0].radial, -speed, 1e-9);
     let force = model.hertz[1].stiffness * deepest.powf(1.5);
     record.near("largest mean force of a step", course.peak, force, 1e-3);
     record.plot = Some(super::plot::Plot {
@@ -149,7 +149,7 @@ fn hertz_impact_coarse(record: &mut Record) {
         at[0] -= 1e-6;
         let mut fastest = 0.0f64;
         let course = march_with(&motion, thrown(&motion, at, speed), 1000, |s| {
-            fastest = fastest.max(s.ball_velocities[0][0].abs());
+            fastest = fastest.max(s.ball_velocities[0].radial.abs());
         });
         record.closed(&course);
         record.below(
@@ -157,7 +157,7 @@ fn hertz_impact_coarse(record: &mut Record) {
             fastest / speed,
             1.0 + 1e-9,
         );
-        let far = course.last.balls[0][0].abs();
+        let far = course.last.balls[0].radial.abs();
         record.below("distance from the middle over the clearance", far / 13.5e-6, 20.0);
     }
 }
@@ -171,7 +171,7 @@ impl Effect for BallForce {
     }
 
     fn add_loads(&self, _: &Model, _: &Now, loads: &mut Loads) -> Result<(), DynamicsError> {
-        loads.balls.iter_mut().for_each(|f| f[0] += self.0);
+        loads.balls.iter_mut().for_each(|f| f.radial += self.0);
         Ok(())
     }
 }
@@ -192,7 +192,7 @@ fn bouncing_ball(record: &mut Record) {
     let mut before = 0.0;
     let n = 100 * 400;
     let course = march_with(&motion, thrown(&motion, at, 0.0), n, |s| {
-        let v = s.ball_velocities[0][0];
+        let v = s.ball_velocities[0].radial;
         if before > 0.0 && v <= 0.0 {
             // The turning point inside the impact, between two steps.
             impacts.push(motion.time(s.step) - dt * v / (v - before));
@@ -247,7 +247,7 @@ fn rattling_ball(record: &mut Record) {
     let mut before = speed;
     let middle = [0.5 * (a[0] + b[0]), a[1]];
     let course = march_with(&motion, thrown(&motion, middle, speed), 20_000, |s| {
-        let v = s.ball_velocities[0][0];
+        let v = s.ball_velocities[0].radial;
         if before > 0.0 && v <= 0.0 {
             turns.push(motion.time(s.step));
         }
@@ -314,7 +314,11 @@ fn orders(record: &mut Record, stiffer: f64) {
     let groove = |side: Side| {
         let c = g.groove_centre(side);
         let shift = if side == Side::Inner { squeeze } else { 0.0 };
-        [c[0] - at[0], c[1] + shift - at[1], g.touching_distance(side)]
+        [
+            c.radial - at.radial,
+            c.axial + shift - at.axial,
+            g.touching_distance(side),
+        ]
     };
     let equation = Squeezed {
         mass: model.ball_mass(),
@@ -324,7 +328,10 @@ fn orders(record: &mut Record, stiffer: f64) {
     let rest = super::bearings::equilibrium_at(&model, 0.0).unwrap();
     let normal = rest.balls[0].outer.contact_angle_rad;
     let place = rest.displacements.balls[0];
-    let start = [place[0] + 0.2e-6 * normal.cos(), place[1] + 0.2e-6 * normal.sin()];
+    let start = [
+        place.radial + 0.2e-6 * normal.cos(),
+        place.axial + 0.2e-6 * normal.sin(),
+    ];
     let stiffness = 3.0 * model.hertz[1].stiffness * rest.balls[0].outer.approach_m.sqrt();
     let period = std::f64::consts::TAU * (equation.mass / stiffness).sqrt();
     let t = 4.0 * period;
@@ -363,21 +370,21 @@ fn orders(record: &mut Record, stiffer: f64) {
             };
             let motion = Motion::new(&model, settings).unwrap();
             let mut state = motion.rest([0.0; 5], [0.0; 5]);
-            state.balls = vec![start; 2];
+            state.balls = vec![start.into(); 2];
             state.angles = rest
                 .balls
                 .iter()
                 .flat_map(|b| [b.inner, b.outer].map(|c| c.contact_angle_rad))
                 .collect();
             // The accelerations of the start, exactly.
-            state.ball_accelerations = vec![equation.acceleration(start); 2];
+            state.ball_accelerations = vec![equation.acceleration(start).into(); 2];
             let mut state = motion.with_energies(state);
             let mut cache = StepCache::default();
             for _ in 0..n {
                 state = motion.step(&state, &mut cache).unwrap().0;
             }
             let x = state.balls[0];
-            (x[0] - exact[0]).hypot(x[1] - exact[1])
+            (x.radial - exact[0]).hypot(x.axial - exact[1])
         };
         let [coarse, fine] = [800, 1600].map(error);
         let rate = (coarse / fine).log2();
@@ -393,7 +400,7 @@ fn orders(record: &mut Record, stiffer: f64) {
     }
     let motion = Motion::new(&model, conserving(t / 40.0)).unwrap();
     let mut state = motion.rest([0.0; 5], [0.0; 5]);
-    state.balls = vec![start; 2];
+    state.balls = vec![start.into(); 2];
     let course = march(&motion, motion.with_energies(state), 4000);
     record.closed(&course);
 }

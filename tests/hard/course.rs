@@ -129,10 +129,10 @@ impl Course {
         self.peak = self.peak.max(largest_force(next));
         self.open = self
             .open
-            .max(next.forces.iter().filter(|f| **f == [0.0; 2]).count());
+            .max(next.forces.iter().filter(|f| f.norm() == 0.0).count());
         (0..5).for_each(|i| self.mean_shaft[i] += next.shaft[i]);
         for (sum, f) in self.mean_forces.iter_mut().zip(&next.forces) {
-            *sum += f[0].hypot(f[1]);
+            *sum += f.norm();
         }
     }
 
@@ -156,12 +156,9 @@ impl Course {
             .iter()
             .chain(&state.ball_velocities)
             .chain(&state.forces)
-            .flatten();
+            .flat_map(|vector| vector.to_array());
         let shaft = state.shaft.iter().chain(&state.shaft_velocity);
-        rings
-            .chain(balls.copied())
-            .chain(shaft.copied())
-            .all(f64::is_finite)
+        rings.chain(balls).chain(shaft.copied()).all(f64::is_finite)
     }
 
     /// Shaft displacement over time: `component` 0 is x, 1 is z, um; 2 is the largest force, N.
@@ -175,5 +172,5 @@ impl Course {
 
 /// Largest contact force, N.
 pub fn largest_force(state: &MotionState) -> f64 {
-    state.forces.iter().map(|f| f[0].hypot(f[1])).fold(0.0, f64::max)
+    state.forces.iter().map(|f| f.norm()).fold(0.0, f64::max)
 }

@@ -332,7 +332,7 @@ fn loses_contacts(record: &mut Record) {
     let (mut in_air, mut caught) = (vec![false; 18], 0);
     let course = case.with(10e-3).seen(record, |state| {
         for (ball, flew) in in_air.iter_mut().enumerate() {
-            let flies = (0..2).all(|side| state.forces[2 * ball + side] == [0.0; 2]);
+            let flies = (0..2).all(|side| state.forces[2 * ball + side].norm() == 0.0);
             caught += usize::from(*flew && !flies);
             *flew = flies;
         }

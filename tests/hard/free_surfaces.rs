@@ -186,8 +186,7 @@ fn spalled_ball(record: &mut Record) {
     let mut empty = [0; 2];
     over(case, surfaces).with(6e-3).rolled(record, NOTHING, |state| {
         for side in Side::BOTH {
-            let [radial, axial] = state.forces[side.index()];
-            empty[side.index()] += usize::from(radial.hypot(axial) < 1.0);
+            empty[side.index()] += usize::from(state.forces[side.index()].norm() < 1.0);
         }
     });
     record.that(

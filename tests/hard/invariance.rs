@@ -160,7 +160,7 @@ fn turned_load(record: &mut Record) {
             schedule: input::Schedule::Constant,
         }));
         let course = from_equilibrium(&model, &start, conserving(5e-6), 100);
-        let moved: Vec<f64> = course.last.forces.iter().map(|f| f[0].hypot(f[1])).collect();
+        let moved: Vec<f64> = course.last.forces.iter().map(|f| f.norm()).collect();
         (results(&start), moved)
     };
     let (usual, (mut rest, mut moved)) = (run(0.0), run(5.0));

@@ -201,7 +201,7 @@ fn crossing(record: &mut Record) {
     let start = motion.start(&equilibrium_at(&model, 0.0).unwrap());
     let (mut low, mut high, mut azimuth) = (f64::INFINITY, 0.0f64, 0.0);
     let course = super::course::march_with(&motion, start, 200, |s| {
-        let f = s.forces[1][0].hypot(s.forces[1][1]);
+        let f = s.forces[1].norm();
         (low, high) = (low.min(f), high.max(f));
         azimuth = motion.ball_azimuth(0, motion.time(s.step));
     });

@@ -4,7 +4,7 @@
 //! part of the acceleration that the forces at the instant do not explain. For linear bodies it falls at every step;
 //! contacts add the difference between the mean of the forces at both ends of a step and the discrete gradient.
 
-use contact::Side;
+use contact::{Meridian, Side};
 use dynamics::Model;
 use dynamics::effects::Now;
 use dynamics::interactions::raceway_contact::Site;
@@ -56,9 +56,9 @@ fn memory(model: &Model, motion: &Motion<'_>, scheme: Integrator, dt: f64, state
     let of_ball = |b: usize, i: usize| {
         of(
             mass,
-            state.ball_velocities[b][i],
-            state.ball_accelerations[b][i],
-            balls[b][i],
+            state.ball_velocities[b].to_array()[i],
+            state.ball_accelerations[b].to_array()[i],
+            balls[b].to_array()[i],
         )
     };
     let of_balls: f64 = (0..balls.len()).map(|b| of_ball(b, 0) + of_ball(b, 1)).sum();
@@ -75,7 +75,7 @@ fn memory(model: &Model, motion: &Motion<'_>, scheme: Integrator, dt: f64, state
 }
 
 /// Forces on balls [radial, axial] and on the shaft at the instant of a state, N.
-fn forces(model: &Model, motion: &Motion<'_>, state: &MotionState) -> (Vec<[f64; 2]>, [f64; 5]) {
+fn forces(model: &Model, motion: &Motion<'_>, state: &MotionState) -> (Vec<Meridian>, [f64; 5]) {
     let time = motion.time(state.step);
     let now = Now {
         time,
@@ -96,11 +96,11 @@ fn forces(model: &Model, motion: &Motion<'_>, state: &MotionState) -> (Vec<[f64;
             side.sign() * model.hertz[side.index()].stiffness * state.approaches[index].max(0.0).powf(1.5);
         let (sin, cos) = state.angles[index].sin_cos();
         // On the ring along l; the ball gets the negative.
-        let force = [size * cos, size * sin];
-        (0..2).for_each(|i| balls[ball][i] -= force[i]);
+        let force = Meridian::new(size * cos, size * sin);
+        balls[ball] = balls[ball] - force;
         if side == Side::Inner {
             for (sum, row) in shaft.iter_mut().zip(site.carrier_rows()) {
-                *sum += row[0] * force[0] + row[1] * force[1];
+                *sum += row.dot(force);
             }
         }
     }

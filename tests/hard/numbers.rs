@@ -155,7 +155,7 @@ fn denormal(record: &mut Record) {
     let motion = Motion::new(&model, conserving(5e-6)).unwrap();
     let mut state = motion.start(&start);
     state.shaft[0] = 1e-310;
-    state.ball_velocities[0] = [1e-310, -1e-320];
+    state.ball_velocities[0] = [1e-310, -1e-320].into();
     let course = march(&motion, state, 200);
     record.closed(&course);
 }

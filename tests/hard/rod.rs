@@ -153,7 +153,7 @@ impl Rod {
             side: Side::Outer,
             azimuth: 0.0,
             ring_azimuth: 0.0,
-            reach: [0.0, touching - self.gap],
+            reach: [0.0, touching - self.gap].into(),
             touching,
             lever: 0.0,
             law,
@@ -228,14 +228,14 @@ impl Rod {
             work += ended.works.load;
             loss += body.numerical_loss(integrator, &state, &next) + contact.numerical_loss;
             for (i, place) in wall.iter_mut().enumerate() {
-                let (inertia, x) = (inertia[i], solution.balls[0][i]);
+                let (inertia, x) = (inertia[i], solution.balls[0].to_array()[i]);
                 loss += inertia.numerical_loss(integrator, x, dt);
                 let [v, a] = inertia.update(integrator, x, dt);
                 *place = [x, v, a];
             }
             state = next;
             let [_, end] = solution.reach(1);
-            let stored = law.evaluate(end[0].hypot(end[1]) - touching).energy;
+            let stored = law.evaluate(end.norm() - touching).energy;
             let energy =
                 body.energies(&state).iter().sum::<f64>() + stored + 0.5 * mass * wall[1][1] * wall[1][1];
             let before = *first.get_or_insert(0.5 * self.mass() * self.speed * self.speed);

@@ -123,8 +123,8 @@ fn gyroscopic_alone(record: &mut Record) {
                 let sign = [1.0, -1.0][side];
                 let across = loads.contacts[2 * b + side];
                 [
-                    sign * c.force_n * cos - across[0],
-                    sign * c.force_n * sin - across[1],
+                    sign * c.force_n * cos - across.radial,
+                    sign * c.force_n * sin - across.axial,
                 ]
             };
             let (inner, outer) = (push(0, &ball.inner), push(1, &ball.outer));

@@ -97,8 +97,7 @@ fn sharp(record: &mut Record) {
     let mut empty = [0; 2];
     let course = case.seen(record, |state| {
         for side in Side::BOTH {
-            let [radial, axial] = state.forces[side.index()];
-            empty[side.index()] += usize::from(radial.hypot(axial) < 1.0);
+            empty[side.index()] += usize::from(state.forces[side.index()].norm() < 1.0);
         }
     });
     record.that(

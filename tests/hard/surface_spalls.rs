@@ -164,7 +164,8 @@ fn deep(record: &mut Record) {
     };
     let geometry = case.smooth().geometry;
     let angle = case.contact_angle();
-    let along = |state: &MotionState| state.balls[0][0] * angle.cos() + state.balls[0][1] * angle.sin();
+    let along =
+        |state: &MotionState| state.balls[0].radial * angle.cos() + state.balls[0].axial * angle.sin();
     let (mut first, mut most) = (None, 0.0f64);
     case.seen(record, |state| {
         let sunk = along(state) - *first.get_or_insert_with(|| along(state));

@@ -204,8 +204,7 @@ impl Rolling {
 
 /// Force of an outer contact, N.
 pub fn outer_force(state: &MotionState, ball: usize) -> f64 {
-    let force = state.forces[2 * ball + 1];
-    force[0].hypot(force[1])
+    state.forces[2 * ball + 1].norm()
 }
 
 /// 2 kN at 1800 rpm.

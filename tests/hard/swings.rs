@@ -91,7 +91,7 @@ fn distance(a: [f64; 2], b: [f64; 2]) -> f64 {
 fn add_swings(model: &Model, rest: &StaticSolution, state: &MotionState, energies: &mut [f64]) {
     for ((energy, ball), v) in energies.iter_mut().zip(&rest.balls).zip(&state.ball_velocities) {
         let (sin, cos) = ball.inner.contact_angle_rad.sin_cos();
-        *energy += 0.5 * model.ball_mass() * (v[1] * cos - v[0] * sin).powi(2);
+        *energy += 0.5 * model.ball_mass() * (v.axial * cos - v.radial * sin).powi(2);
     }
 }
 

@@ -6,6 +6,7 @@
 //! Reference: Harris, Rolling Bearing Analysis (4th ed.), chapter 2.
 
 use crate::error::ContactError;
+use crate::meridian::Meridian;
 
 /// Which raceway.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -52,9 +53,6 @@ impl Side {
 
 /// A value of each side, inner first.
 pub type BySide<T> = [T; 2];
-
-/// A vector in a meridian plane [radial, axial].
-pub type Meridian = [f64; 2];
 
 /// Dimensions of the bearing, m.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -157,13 +155,13 @@ impl BearingGeometry {
         self.groove_distance() * self.free_contact_angle().sin()
     }
 
-    /// Groove centre `[radial, axial]` in the reference position, m; axial from the outer groove centres.
-    pub fn groove_centre(&self, side: Side) -> [f64; 2] {
+    /// Groove centre in the reference position, m; axial from the outer groove centres.
+    pub fn groove_centre(&self, side: Side) -> Meridian {
         let axial = match side {
             Side::Inner => self.axial_offset(),
             Side::Outer => 0.0,
         };
-        [self.centre_radius(side), axial]
+        Meridian::new(self.centre_radius(side), axial)
     }
 
     /// Distance from groove centre to ball centre when they touch, R - D_w/2, m.
@@ -171,9 +169,9 @@ impl BearingGeometry {
         self.groove_radius(side) - 0.5 * self.ball_diameter
     }
 
-    /// Ball centre `[radial, axial]` in the reference position, m: on the line of groove centres, with equal
+    /// Ball centre in the reference position, m: on the line of groove centres, with equal
     /// gap (or interference) to both raceways.
-    pub fn ball_centre(&self) -> [f64; 2] {
+    pub fn ball_centre(&self) -> Meridian {
         let [inner, outer] = Side::BOTH.map(|side| self.groove_centre(side));
         let [touching_inner, touching_outer] = Side::BOTH.map(|side| self.touching_distance(side));
         midway(inner, outer, touching_inner, touching_outer)
@@ -181,7 +179,7 @@ impl BearingGeometry {
 
     /// Pitch diameter, twice the ball centre's radius in the reference position, m.
     pub fn pitch_diameter(&self) -> f64 {
-        2.0 * self.ball_centre()[0]
+        2.0 * self.ball_centre().radial
     }
 
     /// Azimuth of ball `ball`, rad, in 0..2 pi.
@@ -194,9 +192,9 @@ impl BearingGeometry {
 /// Point with equal approach to two groove centres at touching distances `di`, `do_`, on their line. Where one groove
 /// is so much wider that there is none between the centres, the point is at most half a touching distance beyond one:
 /// it touches neither.
-pub fn midway(inner: [f64; 2], outer: [f64; 2], di: f64, do_: f64) -> [f64; 2] {
-    let line = [inner[0] - outer[0], inner[1] - outer[1]];
-    let length = line[0].hypot(line[1]);
+pub fn midway(inner: Meridian, outer: Meridian, di: f64, do_: f64) -> Meridian {
+    let line = inner - outer;
+    let length = line.norm();
     // From the outer centre: |x - outer| - do_ = |x - inner| - di.
     let share = if length > 0.0 {
         let equal = 0.5 * (length + do_ - di) / length;
@@ -204,7 +202,7 @@ pub fn midway(inner: [f64; 2], outer: [f64; 2], di: f64, do_: f64) -> [f64; 2] {
     } else {
         0.5
     };
-    [outer[0] + share * line[0], outer[1] + share * line[1]]
+    outer + line.map(|x| share * x)
 }
 
 #[cfg(test)]
@@ -217,11 +215,10 @@ mod tests {
         for (di, do_) in [(0.2, 0.3), (0.3, 5.7), (5.7, 0.3), (1.0, 1.0)] {
             for gap in [1e-3, 0.1, 0.9] {
                 // The discs in which the ball is free overlap by `gap` of the smaller one, or hold one another.
-                let outer = [0.0, (di + do_ - gap * f64::min(di, do_)).min(1.5)];
-                let x = midway([0.0, 0.0], outer, di, do_);
-                let from = |c: [f64; 2]| (x[0] - c[0]).hypot(x[1] - c[1]);
+                let outer = Meridian::new(0.0, (di + do_ - gap * f64::min(di, do_)).min(1.5));
+                let x = midway(Meridian::default(), outer, di, do_);
                 assert!(
-                    from([0.0; 2]) < di && from(outer) < do_,
+                    x.norm() < di && (x - outer).norm() < do_,
                     "{di} {do_} {gap}: {x:?}"
                 );
             }
@@ -248,9 +245,9 @@ mod tests {
         let x = g.ball_centre();
         for side in Side::BOTH {
             let c = g.groove_centre(side);
-            let approach = (x[0] - c[0]).hypot(x[1] - c[1]) - g.touching_distance(side);
+            let approach = (x - c).norm() - g.touching_distance(side);
             assert!(approach.abs() < 1e-17, "{side:?}: {approach}");
-            let normal = side.sign() * (x[0] - c[0]);
+            let normal = side.sign() * (x - c).radial;
             assert!(normal > 0.0, "{side:?}: the ball lies towards the groove bottom");
         }
     }
@@ -264,7 +261,7 @@ mod tests {
         };
         assert!(g.clearance() < 0.0 && g.free_contact_angle() == 0.0);
         let x = g.ball_centre();
-        let approach = |s| (x[0] - g.groove_centre(s)[0]).abs() - g.touching_distance(s);
+        let approach = |s| (x - g.groove_centre(s)).radial.abs() - g.touching_distance(s);
         assert!((approach(Side::Inner) - approach(Side::Outer)).abs() < 1e-16);
         assert!((approach(Side::Inner) + approach(Side::Outer) + 0.5 * g.clearance()).abs() < 1e-16);
     }

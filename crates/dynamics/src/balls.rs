@@ -1,6 +1,6 @@
 //! What is reported of every ball.
 
-use contact::Side;
+use contact::{Meridian, Side};
 use serde::Serialize;
 
 use crate::surfaces::EllipseKind;
@@ -23,15 +23,6 @@ pub struct ContactResult {
     pub ellipse: Option<EllipseKind>,
 }
 
-/// Displacement of a ball from the just-touching position.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct BallDisplacement {
-    /// Away from the axis, m.
-    pub radial: f64,
-    /// Along +z, m.
-    pub axial: f64,
-}
-
 /// One ball.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct BallResult {
@@ -41,8 +32,8 @@ pub struct BallResult {
     pub inner: ContactResult,
     /// Outer contact.
     pub outer: ContactResult,
-    /// Displacement.
-    pub displacement_m: BallDisplacement,
+    /// Displacement from the just-touching position.
+    pub displacement_m: Meridian,
     /// Of a free ball, its turning and its traction.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub free: Option<FreeBallResult>,

@@ -5,7 +5,7 @@
 //! rings, inner first. Of a ring that a static equilibrium sees, ports are the elastic motion relative to what
 //! carries it; of one that moves in time, all motion, and its mount follows the shaft.
 
-use contact::Side;
+use contact::{Meridian, Side};
 use ring::Partner;
 
 use crate::bodies::{CageBody, FlatBody, FreeBall, Inertia, Name, TiltedLoads};
@@ -98,7 +98,7 @@ pub struct ContactList {
     /// The contacts.
     pub sites: Vec<Site>,
     /// Additional forces on the rings, by site; see [`RacewayContacts::dead`].
-    pub dead: Vec<[f64; 2]>,
+    pub dead: Vec<Meridian>,
     /// Means over a step; None: forces of an instant.
     pub means: Option<Means>,
 }
@@ -149,13 +149,13 @@ impl BearingParts {
 
     /// Puts flexible rings in the place of those before. Grooves of a ring that is None here stay at `held`, m, by
     /// ball.
-    pub fn set_rings(&mut self, rings: [Option<ElasticPorts>; 2], held: &[Vec<[f64; 2]>; 2]) {
+    pub fn set_rings(&mut self, rings: [Option<ElasticPorts>; 2], held: &[Vec<Meridian>; 2]) {
         self.rings = rings;
         self.connect(held);
     }
 
     /// Connects the contacts with what moves the grooves of the rings.
-    fn connect(&mut self, held: &[Vec<[f64; 2]>; 2]) {
+    fn connect(&mut self, held: &[Vec<Meridian>; 2]) {
         let grooves = Side::BOTH.map(|side| {
             let elastic = self.elastic(side);
             // The ports of a ring in motion have the motion of what carries it in them.

@@ -1,6 +1,6 @@
 //! What an equilibrium is found for, and the unknowns of a bearing at rest.
 
-use contact::Side;
+use contact::{Meridian, Side};
 
 use crate::bearing::{BearingParts, FIRST_BALL, SHAFT};
 use crate::interactions::raceway_contact::{SiteState, on_rings};
@@ -11,10 +11,10 @@ use crate::system::{BodyId, System};
 pub struct Displacements {
     /// Shaft x, y, z, tilt x, tilt y.
     pub shaft: [f64; 5],
-    /// Balls [radial, axial] from the just-touching position.
-    pub balls: Vec<[f64; 2]>,
-    /// Elastic motion of the groove centres, inner ring then outer, `[n_balls][2]`.
-    pub grooves: [Vec<[f64; 2]>; 2],
+    /// Balls from the just-touching position.
+    pub balls: Vec<Meridian>,
+    /// Elastic motion of the groove centres, inner ring then outer, by ball.
+    pub grooves: [Vec<Meridian>; 2],
     /// The seat of the outer ring along z; 0 unless it slides.
     pub seat: f64,
 }
@@ -24,8 +24,8 @@ impl Displacements {
     pub fn zero(n_balls: usize, flexible: [bool; 2]) -> Displacements {
         Displacements {
             shaft: [0.0; 5],
-            balls: vec![[0.0; 2]; n_balls],
-            grooves: flexible.map(|f| if f { vec![[0.0; 2]; n_balls] } else { Vec::new() }),
+            balls: vec![Meridian::default(); n_balls],
+            grooves: flexible.map(|f| vec![Meridian::default(); if f { n_balls } else { 0 }]),
             seat: 0.0,
         }
     }
@@ -35,11 +35,11 @@ impl BearingParts {
     /// The unknowns that place the bodies at `u`.
     pub fn unknowns(&self, u: &Displacements) -> Vec<f64> {
         let mut x: Vec<f64> = self.shaft.free().map(|dof| u.shaft[dof]).collect();
-        x.extend(u.balls.as_flattened());
+        x.extend(Meridian::flat(&u.balls));
         x.extend(self.seat.iter().map(|_| u.seat));
         for (ports, grooves) in self.rings.iter().zip(&u.grooves) {
             if ports.is_some() {
-                x.extend(grooves.as_flattened());
+                x.extend(Meridian::flat(grooves));
             }
         }
         x
@@ -49,13 +49,13 @@ impl BearingParts {
     pub fn displacements(&self, x: &[f64], held: &Displacements) -> Displacements {
         let system = self.system();
         let grooves = |side: Side| match self.elastic(side) {
-            Some(i) => x[system.unknowns(BodyId::Elastic(i))].as_chunks().0.to_vec(),
+            Some(i) => Meridian::list(&x[system.unknowns(BodyId::Elastic(i))]),
             None => held.grooves[side.index()].clone(),
         };
         Displacements {
             shaft: system.coordinates(SHAFT, x),
             balls: (0..self.balls.len())
-                .map(|ball| system.coordinates(FIRST_BALL + ball, x))
+                .map(|ball| system.coordinates(FIRST_BALL + ball, x).into())
                 .collect(),
             grooves: Side::BOTH.map(grooves),
             seat: self.seat_end(&system, x),
@@ -73,8 +73,8 @@ impl BearingParts {
         self.states(&self.unknowns(u))
     }
 
-    /// Force on the ring of every site [radial, axial], N.
-    pub fn forces_at(&self, u: &Displacements) -> Vec<[f64; 2]> {
+    /// Force on the ring of every site, N.
+    pub fn forces_at(&self, u: &Displacements) -> Vec<Meridian> {
         on_rings(&self.states_at(u))
     }
 }

@@ -4,7 +4,7 @@
 //! convex but for finite rotations of free tilts, and its minimum is the equilibrium. Steps of Newton are capped, so any
 //! start is safe. Cost: one dense factorisation of 2 n_balls (1 + rings) + 5 unknowns per iteration.
 
-use contact::{BearingGeometry, Side};
+use contact::{BearingGeometry, Meridian, Side};
 use dense::DenseError;
 use timer::SharedLaps;
 
@@ -220,9 +220,8 @@ fn dense_error(source: DenseError) -> DynamicsError {
 /// Unloaded balls rest midway between their raceways: those without a load of their own that are not squeezed between
 /// both. A ball that Newton left touching a raceway, with a force below its residual, is unloaded.
 pub fn centre_unloaded(parts: &BearingParts, u: &mut Displacements) {
-    let size = |load: [f64; 2]| load[0].hypot(load[1]);
     let loads: Vec<f64> = (0..parts.balls.len())
-        .map(|ball| size(parts.ball_load(ball)))
+        .map(|ball| parts.ball_load(ball).norm())
         .collect();
     // The weight of a ball across its meridian plane leaves round-off in that plane.
     let weightless = 4.0 * f64::EPSILON * loads.iter().copied().fold(0.0, f64::max);
@@ -238,19 +237,17 @@ pub fn centre_unloaded(parts: &BearingParts, u: &mut Displacements) {
         // Groove centres seen from the ball, then the point of equal gap on their line.
         let [centre_inner, centre_outer] = [0, 1].map(|i| states[i].reach().map(|l| -l));
         let shift = contact::geometry::midway(centre_inner, centre_outer, pair[0].touching, pair[1].touching);
-        u.balls[ball][0] += shift[0];
-        u.balls[ball][1] += shift[1];
+        u.balls[ball] = u.balls[ball] + shift;
     }
 }
 
 impl BearingParts {
-    /// Load on a ball at its just-touching position and what its contacts add besides their normal forces [radial,
-    /// axial], N.
-    pub fn ball_load(&self, ball: usize) -> [f64; 2] {
-        let mut load = self.balls[ball].dofs.map(|dof| dof.load);
+    /// Load on a ball at its just-touching position and what its contacts add besides their normal forces, N.
+    pub fn ball_load(&self, ball: usize) -> Meridian {
+        let mut load = Meridian::from(self.balls[ball].dofs.map(|dof| dof.load));
         for (site, dead) in self.contacts.sites.iter().zip(&self.contacts.dead) {
             if site.ball == ball {
-                load = [load[0] - dead[0], load[1] - dead[1]];
+                load = load - *dead;
             }
         }
         load
@@ -262,7 +259,7 @@ impl BearingParts {
         let contacts = self.contacts.sites.iter().zip(&self.contacts.dead);
         for (site, dead) in contacts.filter(|(site, _)| site.side == Side::Inner) {
             for (load, row) in sum.iter_mut().zip(site.carrier_rows()) {
-                *load += row[0] * dead[0] + row[1] * dead[1];
+                *load += row.dot(*dead);
             }
         }
         sum

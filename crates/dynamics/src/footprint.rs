@@ -4,7 +4,9 @@ use std::sync::Arc;
 
 use contact::facets::FacetContact;
 use contact::patch_shape::PatchShape;
-use contact::{ContactError, FacetSurface, Groove, NodalWeights, Patch, RacewaySurface, Side, Unevenness};
+use contact::{
+    ContactError, FacetSurface, Groove, Meridian, NodalWeights, Patch, RacewaySurface, Side, Unevenness,
+};
 use mesh::NodePositions;
 use rayon::prelude::*;
 
@@ -58,7 +60,7 @@ pub fn place(
     raceway: &Raceway,
     contacts: &mut RacewayContacts,
     states: &[SiteState],
-    forces: &[[f64; 2]],
+    forces: &[Meridian],
 ) -> Result<Vec<Footprint>, DynamicsError> {
     let ring = model.ring(side).expect("only flexible rings have footprints");
     let n_balls = model.geometry.n_balls;
@@ -83,10 +85,10 @@ fn place_patch(
     raceway: &Raceway,
     site: &mut Site,
     angle: f64,
-    force: [f64; 2],
+    force: Meridian,
     loaded: bool,
 ) -> Result<Footprint, DynamicsError> {
-    let load = force[0].hypot(force[1]);
+    let load = force.norm();
     let angle = on_groove(&raceway.surface, angle, loaded);
     let hertz = model.hertz[site.side.index()].semi_axes(load);
     let least = model.contact.least_patch;
@@ -122,9 +124,9 @@ fn above(share: f64, forces: impl Iterator<Item = f64> + Clone) -> Vec<bool> {
     forces.map(|force| force > limit).collect()
 }
 
-/// Sizes of forces [radial, axial], N.
-pub fn sizes(forces: &[[f64; 2]]) -> impl Iterator<Item = f64> + Clone {
-    forces.iter().map(|[radial, axial]| radial.hypot(*axial))
+/// Sizes of forces, N.
+pub fn sizes(forces: &[Meridian]) -> impl Iterator<Item = f64> + Clone {
+    forces.iter().map(|force| force.norm())
 }
 
 /// The contact angle if it is on the groove, else the nearest place inside the rim: unloaded balls may be anywhere, and
@@ -144,7 +146,7 @@ pub fn check_on_groove(
     surface: &RacewaySurface,
     sites: &[Site],
     states: &[SiteState],
-    forces: &[[f64; 2]],
+    forces: &[Meridian],
 ) -> Result<(), DynamicsError> {
     let of_ring = |site: &Site| site.side == surface.groove.side;
     let contacts = sites.iter().zip(states).zip(well_loaded(sizes(forces)));
@@ -158,7 +160,7 @@ pub fn check_on_groove(
 pub fn check_in_grooves(
     sites: &[Site],
     states: &[SiteState],
-    forces: &[[f64; 2]],
+    forces: &[Meridian],
 ) -> Result<(), DynamicsError> {
     let contacts = sites.iter().zip(states).zip(loaded(sizes(forces)));
     for ((site, state), _) in contacts.filter(|(_, loaded)| *loaded) {
@@ -216,7 +218,7 @@ fn place_facet(
     raceway: &Raceway,
     site: &mut Site,
     angle: f64,
-    force: [f64; 2],
+    force: Meridian,
 ) -> Result<Footprint, DynamicsError> {
     let search = FacetSearch::new(model, ring, raceway, site);
     if site.unevenness.is_none() {
@@ -224,7 +226,7 @@ fn place_facet(
     }
     // The rim itself is left out: a foot point beyond it is on no facet.
     let contact = search.foot(on_groove(&raceway.surface, angle, false))?;
-    let hertz = model.hertz[site.side.index()].semi_axes(force[0].hypot(force[1]));
+    let hertz = model.hertz[site.side.index()].semi_axes(force.norm());
     let weights = NodalWeights::interpolation(contact.nodes, &contact.weights, site.ring_azimuth);
     Ok(Footprint {
         weights,

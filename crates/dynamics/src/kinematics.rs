@@ -10,7 +10,7 @@
 //! Slip ratios are the share of the inner and outer rolling motion that is lost. Rings of equal speed carry cage and
 //! balls round with them, and nothing rolls.
 
-use contact::{BearingGeometry, Side};
+use contact::{BearingGeometry, BySide, Side};
 use input::schedule::piecewise_linear;
 use serde::Deserialize;
 
@@ -141,7 +141,7 @@ impl RingSpeeds {
 }
 
 /// A number of each ring, the inner one first.
-pub type BothRings = [f64; 2];
+pub type BothRings = BySide<f64>;
 
 /// Share of the rolling motion that is lost at the inner and at the outer raceway, 0 to below 1; 0 is pure rolling.
 pub type SlipRatios = BothRings;

@@ -9,7 +9,7 @@
 //! for ever, only a share of the change is taken, by Aitken's rule (Irons and Tuck, Int. J. Numer. Meth. Eng. 1
 //! (1969) 275).
 
-use contact::Side;
+use contact::{Meridian, Side};
 use ring::RingModel;
 use timer::SharedLaps;
 
@@ -147,10 +147,10 @@ impl<'a> LoadCase<'a> {
     }
 
     /// Forces on the rings: the normal ones and the contact loads, N, by site.
-    pub fn ring_forces(&self, normal: &[[f64; 2]]) -> Vec<[f64; 2]> {
+    pub fn ring_forces(&self, normal: &[Meridian]) -> Vec<Meridian> {
         let mut forces = normal.to_vec();
         for (sum, load) in forces.iter_mut().zip(&self.loads.contacts) {
-            *sum = [sum[0] + load[0], sum[1] + load[1]];
+            *sum = *sum + *load;
         }
         forces
     }
@@ -204,7 +204,7 @@ impl BearingParts {
             .iter_mut()
             .zip(loads.balls.iter().zip(&loads.ball_slopes))
         {
-            (ball.dofs[0].load, ball.dofs[1].load) = (load[0], load[1]);
+            (ball.dofs[0].load, ball.dofs[1].load) = (load.radial, load.axial);
             ball.dofs[0].load_slope = *slope;
         }
         if let Some(seat) = &mut self.seat {
@@ -223,7 +223,7 @@ const LEAST_SHARE: f64 = 0.05;
 struct Relaxation {
     share: f64,
     /// The last whole change of the loads that follow the angles.
-    change: Vec<[f64; 2]>,
+    change: Vec<Meridian>,
 }
 
 impl Default for Relaxation {
@@ -239,18 +239,13 @@ impl Relaxation {
     /// Takes only a share of the way from the loads `old` to `new`.
     fn shorten(&mut self, old: &Loads, new: &mut Loads) {
         let (from, to) = (following(old), following(new));
-        let change: Vec<[f64; 2]> = from
-            .iter()
-            .zip(&to)
-            .map(|(a, b)| [b[0] - a[0], b[1] - a[1]])
-            .collect();
-        let product = |a: &[[f64; 2]], b: &[[f64; 2]]| -> f64 {
-            a.iter().zip(b).map(|(a, b)| a[0] * b[0] + a[1] * b[1]).sum()
-        };
+        let change: Vec<Meridian> = from.iter().zip(&to).map(|(a, b)| *b - *a).collect();
+        let product =
+            |a: &[Meridian], b: &[Meridian]| -> f64 { a.iter().zip(b).map(|(a, b)| a.dot(*b)).sum() };
         let before = product(&self.change, &self.change);
         if before > 0.0 && product(&change, &change) > SLOW_PASS * SLOW_PASS * before {
             let pairs = change.iter().zip(&self.change);
-            let bend: Vec<[f64; 2]> = pairs.map(|(a, b)| [a[0] - b[0], a[1] - b[1]]).collect();
+            let bend: Vec<Meridian> = pairs.map(|(a, b)| *a - *b).collect();
             let share = -self.share * product(&self.change, &bend) / product(&bend, &bend);
             // Without any bend the last share stays.
             if share.is_finite() {
@@ -262,12 +257,11 @@ impl Relaxation {
             return;
         }
         let between = |old: f64, new: &mut f64| *new = old + self.share * (*new - old);
-        let pairs = |old: &[[f64; 2]], new: &mut [[f64; 2]]| {
-            let new = new.iter_mut().flatten();
-            old.iter()
-                .flatten()
-                .zip(new)
-                .for_each(|(old, new)| between(*old, new));
+        let pairs = |old: &[Meridian], new: &mut [Meridian]| {
+            for (old, new) in old.iter().zip(new) {
+                between(old.radial, &mut new.radial);
+                between(old.axial, &mut new.axial);
+            }
         };
         pairs(&old.contacts, &mut new.contacts);
         pairs(&old.balls, &mut new.balls);
@@ -278,7 +272,7 @@ impl Relaxation {
 }
 
 /// Loads that may follow the contact angles, N: those of the contacts, then of the balls.
-fn following(loads: &Loads) -> Vec<[f64; 2]> {
+fn following(loads: &Loads) -> Vec<Meridian> {
     [loads.contacts.as_slice(), &loads.balls].concat()
 }
 
@@ -296,18 +290,17 @@ pub fn not_settled(model: &Model, limit: f64, worst: usize, mut history: Vec<f64
 }
 
 /// Largest of the forces, N.
-pub fn largest_force(forces: &[[f64; 2]]) -> f64 {
-    let size = |f: &[f64; 2]| f[0].hypot(f[1]);
-    forces.iter().map(size).fold(f64::MIN_POSITIVE, f64::max)
+pub fn largest_force(forces: &[Meridian]) -> f64 {
+    forces.iter().map(|f| f.norm()).fold(f64::MIN_POSITIVE, f64::max)
 }
 
 /// Largest change over a scale (N), and where.
-pub fn largest_change(old: &[[f64; 2]], new: &[[f64; 2]], scale: f64) -> (f64, usize) {
+pub fn largest_change(old: &[Meridian], new: &[Meridian], scale: f64) -> (f64, usize) {
     old.iter()
         .zip(new)
         .enumerate()
         .fold((0.0, 0), |(largest, place), (i, (a, b))| {
-            let change = (a[0] - b[0]).hypot(a[1] - b[1]) / scale;
+            let change = (*a - *b).norm() / scale;
             if change > largest {
                 (change, i)
             } else {

@@ -252,15 +252,14 @@ impl Model {
     /// Axial shift from a ring's mesh coordinates to the assembled bearing, m.
     pub fn ring_shift(&self, side: Side) -> f64 {
         let centre_z = self.ring(side).map_or(0.0, |r| r.groove.centre_z);
-        self.geometry.groove_centre(side)[1] - centre_z
+        self.geometry.groove_centre(side).axial - centre_z
     }
 
-    /// Groove centre to ball centre at zero displacement of a bearing that is mounted so [radial, axial], m; measured
+    /// Groove centre to ball centre at zero displacement of a bearing that is mounted so, m; measured
     /// by the weights of the contact where they are known.
     pub fn reach(&self, mounting: &Mounting, side: Side, weights: Option<&NodalWeights>) -> Meridian {
         let (centre, ball) = (self.geometry.groove_centre(side), self.geometry.ball_centre());
-        let moved = mounting.groove_motion(side, weights);
-        [0, 1].map(|i| ball[i] - centre[i] - moved[i])
+        ball - centre - mounting.groove_motion(side, weights)
     }
 
     /// Distance of the centres of groove and a touching ball of a bearing that is mounted so, m.

@@ -1,10 +1,10 @@
 //! A static equilibrium: displacements, forces, energies and the checks on them.
 
 use body::BodyLoad;
-use contact::{LoadedPatch, Side};
+use contact::{LoadedPatch, Meridian, Side};
 use ring::vectors::dot;
 
-use crate::balls::{BallDisplacement, BallResult, ContactResult};
+use crate::balls::{BallResult, ContactResult};
 use crate::bearing::{BearingParts, CONTACTS, SHAFT, SlidingSeat};
 use crate::displacements::Displacements;
 use crate::effects::Loads;
@@ -94,7 +94,7 @@ impl StaticSolution {
         let strain_energy = 0.5 * (ring_contact_work(&rings, &forces) + ring_load_work);
         let hertz_energy = states.iter().map(|state| state.force.energy).sum();
         let contact_work: f64 = parts.contacts.sites.iter().zip(&states).map(contact_work).sum();
-        let [finite_work, finite_load] = finite_work(parts, &finite, &forces);
+        let (finite_work, finite_load) = finite_work(parts, &finite, &forces);
         let mut balls = ball_results(model, parts, &states, &u);
         let steady = case.steady(&u)?;
         if let Some(steady) = &steady {
@@ -180,7 +180,7 @@ fn ball_work(parts: &BearingParts, u: &Displacements) -> f64 {
     let loads = (0..parts.balls.len()).map(|ball| parts.ball_load(ball));
     let ball_work = loads.zip(slopes).zip(&u.balls);
     ball_work
-        .map(|((f, slope), x)| dot(&[f[0] + slope * x[0], f[1]], x))
+        .map(|((f, slope), x)| Meridian::new(f.radial + slope * x.radial, f.axial).dot(*x))
         .sum()
 }
 
@@ -188,7 +188,7 @@ fn ball_work(parts: &BearingParts, u: &Displacements) -> f64 {
 fn all_warnings(
     case: &LoadCase,
     footprints: &[Vec<Footprint>; 2],
-    forces: &[[f64; 2]],
+    forces: &[Meridian],
     balls: &[BallResult],
 ) -> Vec<String> {
     warnings(case.model, footprints, forces, balls)
@@ -206,7 +206,9 @@ fn all_warnings(
 /// What the virtual work of loads that follow a displacement, -k u, has more than their energy, J: half of it.
 fn following_work(parts: &BearingParts, u: &Displacements) -> f64 {
     let balls = parts.balls.iter().zip(&u.balls);
-    let balls: f64 = balls.map(|(ball, x)| ball.dofs[0].load_slope * x[0] * x[0]).sum();
+    let balls: f64 = balls
+        .map(|(ball, x)| ball.dofs[0].load_slope * x.radial * x.radial)
+        .sum();
     let spring = parts
         .seat
         .as_ref()
@@ -222,7 +224,7 @@ fn seat_work(parts: &BearingParts, u: &Displacements) -> f64 {
     let contacts = parts.contacts.sites.iter().zip(&parts.contacts.dead);
     let dead: f64 = contacts
         .filter(|(site, _)| site.side == Side::Outer)
-        .map(|(_, dead)| dead[1])
+        .map(|(_, dead)| dead.axial)
         .sum();
     let of_seat = |seat: &SlidingSeat| (seat.body.dofs[2].load + dead - seat.spring.force(u.seat)) * u.seat;
     parts.seat.as_ref().map_or(0.0, of_seat)
@@ -231,21 +233,20 @@ fn seat_work(parts: &BearingParts, u: &Displacements) -> f64 {
 /// Work of a contact force through the whole displacement of ball against groove centre, J.
 fn contact_work((site, state): (&Site, &SiteState)) -> f64 {
     let (l, n) = (state.reach(), state.normal);
-    let moved = [0, 1].map(|i| l[i] - site.reach[i]);
-    let across = state
-        .lateral
-        .map_or([0.0; 2], |lateral| lateral.force(n, state.length));
-    state.force.force * (n[0] * moved[0] + n[1] * moved[1]) + across[0] * moved[0] + across[1] * moved[1]
+    let moved = l - site.reach;
+    let across = state.lateral.map(|lateral| lateral.force(n, state.length));
+    let across = across.unwrap_or_default();
+    state.force.force * n.dot(moved) + across.radial * moved.radial + across.axial * moved.axial
 }
 
 /// Forces at the contacts, by site or none at all, times the elastic motion of the groove centres, J.
-fn ring_contact_work(rings: &RingFields, forces: &[[f64; 2]]) -> f64 {
+fn ring_contact_work(rings: &RingFields, forces: &[Meridian]) -> f64 {
     let mut work = 0.0;
     for side in Side::BOTH {
         if let Some(field) = &rings.elastic[side.index()] {
             for (ball, foot) in rings.footprints[side.index()].iter().enumerate() {
                 if let Some(force) = forces.get(2 * ball + side.index()) {
-                    work += dot(&foot.weights.measure(field), force);
+                    work += Meridian::from(foot.weights.measure(field)).dot(*force);
                 }
             }
         }
@@ -282,33 +283,33 @@ fn load_work_of_bodies(case: &LoadCase, rings: &RingFields) -> Result<f64, Dynam
 
 /// What finite motions add to the virtual work through the displacements, J: of the normal forces, and of what contacts
 /// add besides them, as a load.
-fn finite_work(parts: &BearingParts, finite: &[Option<FiniteMotion>], forces: &[[f64; 2]]) -> [f64; 2] {
-    let mut work = [0.0; 2];
+fn finite_work(parts: &BearingParts, finite: &[Option<FiniteMotion>], forces: &[Meridian]) -> (f64, f64) {
+    let (mut of_normal, mut of_dead) = (0.0, 0.0);
     let inner = forces.iter().step_by(2);
     for (ball, (finite, force)) in finite.iter().zip(inner).enumerate() {
         let Some(finite) = finite else { continue };
-        let (lengths, rows) = (finite.lengths(), finite.rows());
-        let virtual_growth =
-            [0, 1].map(|i| rows.iter().zip(finite.at).map(|(row, x)| row[i] * x).sum::<f64>());
-        work[0] += (0..2)
-            .map(|i| force[i] * (virtual_growth[i] - lengths[i]))
-            .sum::<f64>();
+        let (lengths, rows) = (Meridian::from(finite.lengths()), finite.rows());
+        let growth = [0, 1].map(|i| rows.iter().zip(finite.at).map(|(row, x)| row[i] * x).sum());
+        let growth = Meridian::from(growth);
+        of_normal += force.dot(growth - lengths);
         if let Some(dead) = parts.contacts.dead.get(2 * ball) {
-            work[1] -= dot(dead, &virtual_growth);
+            of_dead -= dead.dot(growth);
         }
     }
-    work
+    (of_normal, of_dead)
 }
 
 /// Sum of contact and applied loads on the shaft under the normal forces on the rings: on free dofs a residual, on the
 /// others minus the reaction.
-fn shaft_balance(parts: &BearingParts, u: &Displacements, forces: &[[f64; 2]]) -> ([f64; 5], [f64; 5]) {
-    let mut all = forces.as_flattened().to_vec();
-    let dead = parts.contacts.dead.as_flattened();
-    all.iter_mut().zip(dead).for_each(|(force, dead)| *force += dead);
+fn shaft_balance(parts: &BearingParts, u: &Displacements, forces: &[Meridian]) -> ([f64; 5], [f64; 5]) {
+    let mut all = forces.to_vec();
+    let dead = parts.contacts.dead.iter();
+    all.iter_mut()
+        .zip(dead)
+        .for_each(|(force, dead)| *force = *force + *dead);
     let taken = parts
         .system()
-        .forces_on::<5>(SHAFT, CONTACTS, &parts.unknowns(u), &all);
+        .forces_on::<5>(SHAFT, CONTACTS, &parts.unknowns(u), &Meridian::flat(&all));
     let own = parts.shaft.forces(Interval::Rest, &u.shaft);
     let sum: [f64; 5] = std::array::from_fn(|i| -own[i] - taken[i]);
     let pick = |free: bool| {
@@ -326,7 +327,7 @@ fn shaft_balance(parts: &BearingParts, u: &Displacements, forces: &[[f64; 2]]) -
 fn warnings(
     model: &Model,
     footprints: &[Vec<Footprint>; 2],
-    forces: &[[f64; 2]],
+    forces: &[Meridian],
     balls: &[BallResult],
 ) -> Vec<String> {
     let mut warnings = edge_warnings(model, footprints, forces, balls);
@@ -351,8 +352,8 @@ fn warnings(
 }
 
 /// Warns of forces across contacts (the gyroscopic moment's) that friction cannot carry.
-fn friction_warning(forces: &[[f64; 2]], across: &[[f64; 2]]) -> Option<String> {
-    let needed = forces.iter().zip(across).map(|(n, f)| size(f) / size(n));
+fn friction_warning(forces: &[Meridian], across: &[Meridian]) -> Option<String> {
+    let needed = forces.iter().zip(across).map(|(n, f)| f.norm() / n.norm());
     let (place, most) = needed
         .enumerate()
         .filter(|(_, needed)| !needed.is_nan())
@@ -372,7 +373,7 @@ fn friction_warning(forces: &[[f64; 2]], across: &[[f64; 2]]) -> Option<String> 
 fn edge_warnings(
     model: &Model,
     footprints: &[Vec<Footprint>; 2],
-    forces: &[[f64; 2]],
+    forces: &[Meridian],
     balls: &[BallResult],
 ) -> Vec<String> {
     let (mut warnings, loaded) = (Vec::new(), loaded(sizes(forces)));
@@ -403,10 +404,6 @@ fn edge_warnings(
     warnings
 }
 
-fn size(f: &[f64; 2]) -> f64 {
-    f[0].hypot(f[1])
-}
-
 /// Results of all balls at given displacements, where their contacts have these states.
 fn ball_results(
     model: &Model,
@@ -420,7 +417,7 @@ fn ball_results(
         let hertz = &model.hertz[site.side.index()];
         // As a motion has it: with the force of strips across the normal.
         let force = match state.lateral {
-            Some(_) => size(&state.on_ring()),
+            Some(_) => state.on_ring().norm(),
             None => state.force.force,
         };
         let semi_axes = hertz.semi_axes(force);
@@ -441,10 +438,7 @@ fn ball_results(
             azimuth_rad: sites[2 * ball].azimuth.rem_euclid(2.0 * std::f64::consts::PI),
             inner: contact(2 * ball + Side::Inner.index()),
             outer: contact(2 * ball + Side::Outer.index()),
-            displacement_m: BallDisplacement {
-                radial: u.balls[ball][0],
-                axial: u.balls[ball][1],
-            },
+            displacement_m: u.balls[ball],
             free: None,
         })
         .collect()

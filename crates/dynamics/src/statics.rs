@@ -15,7 +15,7 @@
 
 use std::sync::Arc;
 
-use contact::Side;
+use contact::{Meridian, Side};
 use timer::{Laps, SharedLaps, Stopwatch};
 
 use crate::bearing::{BearingParts, partner};
@@ -311,7 +311,7 @@ impl StaticSolver {
         &self,
         parts: &BearingParts,
         u: &Displacements,
-        forces: &[[f64; 2]],
+        forces: &[Meridian],
     ) -> Result<(), DynamicsError> {
         let (sites, states) = (&parts.contacts.sites, parts.states_at(u));
         let mut rings = self.rings.iter().flatten();
@@ -355,7 +355,7 @@ impl StaticSolver {
         &mut self,
         model: &Model,
         feet: &[Vec<Footprint>; 2],
-        forces: &[[f64; 2]],
+        forces: &[Meridian],
         loads: &Loads,
     ) -> [Option<Vec<f64>>; 2] {
         let mut clock = Stopwatch::start();
@@ -365,7 +365,8 @@ impl StaticSolver {
                 .clone()
                 .unwrap_or_else(|| vec![0.0; ring.solver.n_dofs()]);
             for (ball, foot) in feet[side.index()].iter().enumerate() {
-                foot.weights.add_load(forces[2 * ball + side.index()], &mut load);
+                foot.weights
+                    .add_load(forces[2 * ball + side.index()].to_array(), &mut load);
             }
             let seat = model.seat_motion(side, loads.bodies[side.index()]);
             Some(ring.solver.solve_on(load, 1, seat.as_deref()))
@@ -379,7 +380,7 @@ impl StaticSolver {
     fn answers(
         &self,
         feet: &[Vec<Footprint>; 2],
-        forces: &[[f64; 2]],
+        forces: &[Meridian],
         fields: &[Option<Vec<f64>>; 2],
     ) -> [Option<ElasticPorts>; 2] {
         Side::BOTH.map(|side| {
@@ -390,7 +391,9 @@ impl StaticSolver {
                 name: side.name(),
                 start: vec![0.0; 2 * feet[i].len()],
                 offset: measured.collect(),
-                at_forces: (0..feet[i].len()).flat_map(|b| forces[2 * b + i]).collect(),
+                at_forces: (0..feet[i].len())
+                    .flat_map(|b| forces[2 * b + i].to_array())
+                    .collect(),
                 stiffness: stiffness.clone(),
                 n_moving: 2 * feet[i].len(),
                 ..ElasticPorts::default()
@@ -432,9 +435,8 @@ fn approach_facets(
 fn adopt_offsets(parts: &BearingParts, u: &mut Displacements) {
     for (groove, ring) in u.grooves.iter_mut().zip(&parts.rings) {
         if let Some(ring) = ring {
-            for (g, c) in groove.iter_mut().flatten().zip(&ring.offset) {
-                *g = *c;
-            }
+            let offsets = Meridian::list(&ring.offset);
+            groove.iter_mut().zip(offsets).for_each(|(g, c)| *g = c);
         }
     }
 }

@@ -400,7 +400,7 @@ fn contact_damping(parts: &BearingParts, system: &System, x: &[f64], law: Contac
                 for (site, state) in states.iter().enumerate() {
                     let touching = parts.contacts.sites[site].touching;
                     let [c, _] = coefficient(&law, state.length - touching);
-                    let (first, n) = (N_ROWS * N_ROWS * (site / 2), state.normal);
+                    let (first, n) = (N_ROWS * N_ROWS * (site / 2), state.normal.to_array());
                     for (i, k) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
                         let (row, column) = (2 * (site % 2) + i, 2 * (site % 2) + k);
                         forces.tangents[first + N_ROWS * row + column] = c * n[i] * n[k];

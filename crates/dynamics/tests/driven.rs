@@ -65,10 +65,7 @@ fn an_equilibrium_with_the_gyroscopic_moment_lasts() {
         let model = spinning(Case::axial(2000.0).rigid(), shares);
         let states = run(&model, settings(1e-5, FAST), 50);
         for (a, b) in states[0].balls.iter().zip(&states[50].balls) {
-            assert!(
-                (a[0] - b[0]).abs() < 1e-12 && (a[1] - b[1]).abs() < 1e-12,
-                "{a:?} {b:?}"
-            );
+            assert!((*a - *b).norm() < 1e-12, "{a:?} {b:?}");
         }
         assert!((states[0].angles[1] - states[50].angles[1]).abs() < 1e-8);
         assert_ledger_closes(&states);
@@ -137,10 +134,7 @@ fn a_driven_shaft_moves_the_balls() {
                 rolled: 0.0,
             };
             let statics = solver.solve_at(&model, &pose, None).unwrap();
-            let (force, still) = (
-                state.forces[0][0].hypot(state.forces[0][1]),
-                statics.balls[0].inner.force_n,
-            );
+            let (force, still) = (state.forces[0].norm(), statics.balls[0].inner.force_n);
             // Forces are means over the step. The ball's modes are above 4 kHz, the drive is at 0.5 kHz: (1/8)^2 / 2
             // of the change at most.
             assert!(

@@ -181,20 +181,11 @@ fn assert_same_bits(a: &[MotionState], b: &[MotionState]) {
 
 /// Largest difference of the forces of two runs, over the largest force.
 fn off(a: &[MotionState], b: &[MotionState]) -> f64 {
-    let size = |f: [f64; 2]| f[0].hypot(f[1]);
-    let forces = |states: &[MotionState]| {
-        states
-            .iter()
-            .flat_map(|s| s.forces.clone())
-            .collect::<Vec<[f64; 2]>>()
-    };
+    let forces = |states: &[MotionState]| states.iter().flat_map(|s| s.forces.clone()).collect::<Vec<_>>();
     let (a, b) = (forces(a), forces(b));
-    let largest = a.iter().map(|f| size(*f)).fold(0.0, f64::max);
+    let largest = a.iter().map(|f| f.norm()).fold(0.0, f64::max);
     let pairs = a.iter().zip(&b);
-    pairs
-        .map(|(a, b)| size([a[0] - b[0], a[1] - b[1]]))
-        .fold(0.0, f64::max)
-        / largest
+    pairs.map(|(a, b)| (*a - *b).norm()).fold(0.0, f64::max) / largest
 }
 
 /// Wrong: a ring whose elastic inertia is left out would still be solved as one that has it: other bits, more rounds.

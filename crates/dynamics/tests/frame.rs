@@ -70,13 +70,13 @@ fn free_flight(speed: Speed, dt: f64, n: usize, v: f64) -> [f64; 2] {
     )
     .unwrap();
     // The balls lie on the bottom of the inner groove without touching it.
-    let back = model.geometry.ball_centre()[1] - model.geometry.groove_centre(Side::Inner)[1];
+    let back = model.geometry.ball_centre().axial - model.geometry.groove_centre(Side::Inner).axial;
     let mut state = motion.rest([0.0, 0.0, back, 0.0, 0.0], [v, 0.0, 0.0, 0.0, 0.0]);
     assert!(state.approaches.iter().step_by(2).all(|d| *d < -20e-6));
     let mut cache = StepCache::default();
     for _ in 0..n {
         state = motion.step(&state, &mut cache).unwrap().0;
-        assert!(state.forces.iter().step_by(2).all(|f| *f == [0.0; 2]));
+        assert!(state.forces.iter().step_by(2).all(|f| f.norm() == 0.0));
     }
     let (u, angle) = motion.ring_displacement(&state, Side::Inner).unwrap();
     let mass = &model.ring(Side::Inner).unwrap().mesh;
@@ -115,10 +115,7 @@ fn a_mean_motion_bearing_rests_and_closes_its_ledger() {
     let states = run(&model, &start, settings(1e-5), 5);
     let (first, last) = (&states[0], states.last().unwrap());
     for (a, b) in first.balls.iter().zip(&last.balls) {
-        assert!(
-            (a[0] - b[0]).abs() < 1e-12 && (a[1] - b[1]).abs() < 1e-12,
-            "{a:?} {b:?}"
-        );
+        assert!((*a - *b).norm() < 1e-12, "{a:?} {b:?}");
     }
     let (model, start) = radial_step(300.0, Hold::MeanMotion, true);
     let states = run(&model, &start, settings(1e-5), 150);
@@ -197,7 +194,7 @@ fn a_spinning_ring_rests_in_its_static_expansion() {
         },
         100,
     );
-    let force = |s: &MotionState, site: usize| s.forces[site][0].hypot(s.forces[site][1]);
+    let force = |s: &MotionState, site: usize| s.forces[site].norm();
     let worst = (0..36)
         .map(|i| (force(states.last().unwrap(), i) / force(&states[0], i) - 1.0).abs())
         .fold(0.0, f64::max);
@@ -235,11 +232,10 @@ fn cyclic_sparse_and_sector_steps_agree() {
             assert_eq!(Side::BOTH.map(|side| motion.solver_name(side)), [Some(name); 2]);
             ends.push(run(&model, &start, turning, 60).pop().unwrap());
         }
-        let size = |f: &[f64; 2]| f[0].hypot(f[1]);
-        let largest = ends[0].forces.iter().map(size).fold(0.0, f64::max);
+        let largest = ends[0].forces.iter().map(|f| f.norm()).fold(0.0, f64::max);
         for end in &ends[1..] {
             for (a, b) in ends[0].forces.iter().zip(&end.forces) {
-                assert!((a[0] - b[0]).hypot(a[1] - b[1]) < 1e-10 * largest, "{a:?} {b:?}");
+                assert!((*a - *b).norm() < 1e-10 * largest, "{a:?} {b:?}");
             }
             for (a, b) in ends[0].shaft.iter().zip(&end.shaft) {
                 assert!((a - b).abs() < 1e-10 * ends[0].shaft[2].abs(), "{a} {b}");

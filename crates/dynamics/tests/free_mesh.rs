@@ -77,13 +77,9 @@ fn steps_of_a_free_mesh_are_those_of_sectors_and_have_the_same_bits_again() {
     let motion = Motion::new(&model, settings()).unwrap();
     assert_eq!(motion.solver_name(Side::Inner), Some("sector"));
     let sectors = steps(&motion, &motion.start(&start), false);
-    let size = |f: &[f64; 2]| f[0].hypot(f[1]);
-    let largest = end.forces.iter().map(size).fold(0.0, f64::max);
+    let largest = end.forces.iter().map(|f| f.norm()).fold(0.0, f64::max);
     let errors = end.forces.iter().zip(&sectors.forces);
-    let error = errors
-        .map(|(a, b)| (a[0] - b[0]).hypot(a[1] - b[1]))
-        .fold(0.0, f64::max)
-        / largest;
+    let error = errors.map(|(a, b)| (*a - *b).norm()).fold(0.0, f64::max) / largest;
     println!("forces of sparse and sector steps agree to {error:.1e} of the largest");
     assert!(error < 1e-10, "{error:e}");
 }

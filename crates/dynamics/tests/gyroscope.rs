@@ -36,12 +36,12 @@ fn free_ring(level: Level, hold: Hold, speed: &Speed, frame: Frame) -> Model {
 fn fly(model: &Model, settings: MotionSettings, velocity: [f64; 5], n: usize) -> Vec<MotionState> {
     let motion = Motion::new(model, settings).unwrap();
     // The balls lie on the bottom of the inner groove without touching it.
-    let back = model.geometry.ball_centre()[1] - model.geometry.groove_centre(Side::Inner)[1];
+    let back = model.geometry.ball_centre().axial - model.geometry.groove_centre(Side::Inner).axial;
     let mut states = vec![motion.rest([0.0, 0.0, back, 0.0, 0.0], velocity)];
     let mut cache = StepCache::default();
     for _ in 0..n {
         let next = motion.step(states.last().unwrap(), &mut cache).unwrap().0;
-        let touches = next.forces.iter().step_by(2).any(|f| *f != [0.0; 2]);
+        let touches = next.forces.iter().step_by(2).any(|f| f.norm() != 0.0);
         assert!(
             !touches,
             "a ball touches at {:?}, {:?}",
@@ -171,7 +171,7 @@ fn the_nutation_of_a_free_ring_does_not_grow() {
 fn flies_steadily(mut model: Model, speed: &Speed, ratio: f64, n: usize) {
     model.geometry.n_balls = 2;
     let motion = Motion::new(&model, MotionSettings::conserving(1e-5, speed.clone())).unwrap();
-    let back = model.geometry.ball_centre()[1] - model.geometry.groove_centre(Side::Inner)[1];
+    let back = model.geometry.ball_centre().axial - model.geometry.groove_centre(Side::Inner).axial;
     let mut state = motion.rest([0.0, 0.0, back, 0.0, 0.0], [0.0, 0.0, 0.0, RATE, 0.0]);
     let window = 10_000;
     // Largest tilt in the first and the last steps, smallest and largest tilt rate of all, largest defect.
@@ -242,7 +242,7 @@ fn without_the_effect_a_free_ring_leaves_its_place_slowly() {
         let mut model = free_ring(TINY, Hold::Clamped, &speed, frame);
         model.geometry.n_balls = 2;
         let motion = Motion::new(&model, MotionSettings::conserving(dt, speed)).unwrap();
-        let back = model.geometry.ball_centre()[1] - model.geometry.groove_centre(Side::Inner)[1];
+        let back = model.geometry.ball_centre().axial - model.geometry.groove_centre(Side::Inner).axial;
         let mut state = motion.rest([1e-9, 0.0, back, 0.0, 0.0], [0.0; 5]);
         let mut cache = StepCache::default();
         for _ in 0..n {

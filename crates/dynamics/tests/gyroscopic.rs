@@ -95,7 +95,7 @@ fn friction_supplies_the_rate_of_the_angular_momentum() {
             let mut moment = [0.0; 3];
             for side in Side::BOTH {
                 let on_ring = loads.contacts[2 * ball + side.index()];
-                let on_ball = space(on_ring.map(|f| -f));
+                let on_ball = space(on_ring.map(|f| -f).to_array());
                 let normal = normals[side.index()];
                 let across: f64 = (0..3).map(|i| normal[i] * on_ball[i]).sum();
                 assert!(across.abs() < 1e-14, "friction acts across the normal");
@@ -217,7 +217,7 @@ fn balls_off_the_inner_raceway_run_in_their_plane() {
     let off: Vec<_> = solution.balls.iter().filter(|b| b.inner.force_n == 0.0).collect();
     assert!((4..14).contains(&off.len()), "{} balls", off.len());
     for b in off {
-        let radius = g.ball_centre()[0] + b.displacement_m.radial;
+        let radius = g.ball_centre().radial + b.displacement_m.radial;
         let expected = model.ball_mass() * cage * cage * radius;
         // Loads settle to 1e-10 of the largest force, about 2 kN.
         assert!(

@@ -4,6 +4,7 @@ mod support;
 
 use std::f64::consts::TAU;
 
+use contact::Meridian;
 use dynamics::kinematics::Speed;
 use dynamics::model::ShaftInertia;
 use dynamics::modes::{ModesSettings, bearing_modes};
@@ -34,18 +35,22 @@ fn changed(state: &MotionState, k: usize, by: f64) -> MotionState {
     let (ball, direction) = (i.saturating_sub(N_SHAFT) / 2, i.saturating_sub(N_SHAFT) % 2);
     match (k < n, i < N_SHAFT) {
         (true, true) => state.shaft[i] += change,
-        (true, false) => state.balls[ball][direction] += change,
+        (true, false) => moved(&mut state.balls[ball], direction, change),
         (false, true) => state.shaft_velocity[i] += change,
-        (false, false) => state.ball_velocities[ball][direction] += change,
+        (false, false) => moved(&mut state.ball_velocities[ball], direction, change),
     }
     state
 }
 
+fn moved(ball: &mut Meridian, direction: usize, change: f64) {
+    *[&mut ball.radial, &mut ball.axial][direction] += change;
+}
+
 /// The same numbers in units of their changes.
 fn numbers(state: &MotionState) -> Vec<f64> {
-    let part = |shaft: &[f64; N_SHAFT], balls: &[[f64; 2]], size: f64| {
+    let part = |shaft: &[f64; N_SHAFT], balls: &[Meridian], size: f64| {
         let shaft = (0..N_SHAFT).map(|i| shaft[i] * if i < 3 { 1.0 } else { RADIUS } / size);
-        let balls = balls.iter().flatten().map(|x| x / size);
+        let balls = balls.iter().flat_map(|ball| ball.to_array()).map(|x| x / size);
         shaft.chain(balls).collect::<Vec<f64>>()
     };
     let mut all = part(&state.shaft, &state.balls, SIZE);

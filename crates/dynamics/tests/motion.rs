@@ -57,10 +57,7 @@ fn a_bearing_in_equilibrium_stays_there() {
     let states = run(&model, &solution, settings(1e-5), 10);
     let last = states.last().unwrap();
     for (a, b) in states[0].balls.iter().zip(&last.balls) {
-        assert!(
-            (a[0] - b[0]).abs() < 1e-12 && (a[1] - b[1]).abs() < 1e-12,
-            "{a:?} {b:?}"
-        );
+        assert!((*a - *b).norm() < 1e-12, "{a:?} {b:?}");
     }
     assert!(
         last.ledger.kinetic.iter().sum::<f64>() < 1e-12 * last.ledger.largest,
@@ -79,7 +76,7 @@ fn the_ledger_closes_when_balls_unload() {
         let states = run(&loaded, &solution, settings(dt), (3e-3 / dt) as usize);
         let open = states
             .iter()
-            .map(|s| s.forces.iter().filter(|f| **f == [0.0; 2]).count())
+            .map(|s| s.forces.iter().filter(|f| f.norm() == 0.0).count())
             .max()
             .unwrap();
         let worst = states
@@ -126,7 +123,7 @@ fn slow_rolling_follows_the_static_forces() {
             turned.contact.mode = ContactMode::Patch;
             let rest = equilibrium(&turned);
             for (ball, f) in rest.balls.iter().zip(state.forces.iter().step_by(2)) {
-                worst = worst.max((f[0].hypot(f[1]) / ball.inner.force_n - 1.0).abs());
+                worst = worst.max((f.norm() / ball.inner.force_n - 1.0).abs());
             }
             println!("step {step}: worst {worst:.2e}");
         }
@@ -236,7 +233,7 @@ fn rigid_rings_carry_the_centrifugal_force_of_the_balls() {
         b.outer.force_n * b.outer.contact_angle_rad.cos() - b.inner.force_n * b.inner.contact_angle_rad.cos();
     let kinematics = dynamics::kinematics::Kinematics::new(&model.geometry, [0.0; 2]);
     let cage = kinematics.cage * 3000.0;
-    let radius = model.geometry.ball_centre()[0] + b.displacement_m.radial;
+    let radius = model.geometry.ball_centre().radial + b.displacement_m.radial;
     let expected = model.ball_mass() * cage * cage * radius;
     assert!((radial / expected - 1.0).abs() < 1e-9, "{radial} {expected}");
     let states = run(
@@ -249,7 +246,7 @@ fn rigid_rings_carry_the_centrifugal_force_of_the_balls() {
         50,
     );
     let last = states.last().unwrap();
-    assert!((last.balls[0][0] - states[0].balls[0][0]).abs() < 1e-10);
+    assert!((last.balls[0].radial - states[0].balls[0].radial).abs() < 1e-10);
     assert!(last.ledger.relative_defect().abs() < 1e-9, "{:?}", last.ledger);
 }
 
@@ -277,7 +274,7 @@ fn moving_patches_do_not_feed_an_oscillating_ball() {
     let model = case.flexible(ContactMode::Patch, Level::hex8(90, 12, 2, 2), Hold::Clamped);
     let motion = Motion::new(&model, settings(1e-5)).unwrap();
     let mut state = motion.start(&equilibrium(&model));
-    state.ball_velocities[4] = [0.0, 1e-3];
+    state.ball_velocities[4] = [0.0, 1e-3].into();
     state = motion.with_energies(state);
     let (mut largest, mut work) = ([0.0f64; 5], [0.0; 5]);
     let mut cache = StepCache::default();

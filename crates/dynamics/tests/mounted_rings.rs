@@ -123,7 +123,7 @@ fn contacts_of_a_fitted_flexible_ring_are_those_of_its_grown_groove() {
         case.flexible(ContactMode::Patch, level, Hold::Clamped),
         &conditions,
     );
-    let growth = model.mounting.rings[0].groove[0];
+    let growth = model.mounting.rings[0].groove.radial;
     let mut grown = case.flexible(ContactMode::Patch, level, Hold::Clamped);
     grown.geometry.inner_raceway_diameter += 2.0 * growth;
     let plain = case.flexible(ContactMode::Patch, level, Hold::Clamped);

@@ -8,7 +8,7 @@ mod support;
 
 use std::f64::consts::TAU;
 
-use contact::BearingGeometry;
+use contact::{BearingGeometry, Meridian};
 use dynamics::displacements::Displacements;
 use dynamics::effects::unbalance::Unbalance;
 use dynamics::effects::{AxialForce, Effect, FrameRotation, Gravity, Moment, RadialForce};
@@ -86,13 +86,13 @@ impl Turn {
     }
 
     /// A place of a ball in its meridian plane.
-    fn ball(self, [r, z]: [f64; 2]) -> [f64; 2] {
+    fn ball(self, Meridian { radial, axial }: Meridian) -> Meridian {
         let shift = if self.half {
-            2.0 * BearingGeometry::reference_7010c().ball_centre()[1]
+            2.0 * BearingGeometry::reference_7010c().ball_centre().axial
         } else {
             0.0
         };
-        [r, self.sign() * z - shift]
+        Meridian::new(radial, self.sign() * axial - shift)
     }
 
     /// Number of a ball that was another one's.
@@ -159,16 +159,18 @@ fn off(pairs: impl Iterator<Item = (f64, f64)>) -> f64 {
 }
 
 /// Largest differences of two places or velocities of shaft and balls, of lengths and of tilts.
-fn differences(found: ([f64; 5], &[[f64; 2]]), expected: ([f64; 5], &[[f64; 2]])) -> f64 {
+fn differences(found: ([f64; 5], &[Meridian]), expected: ([f64; 5], &[Meridian])) -> f64 {
     let lengths = (0..3).map(|i| (expected.0[i], found.0[i]));
-    let balls = expected.1.iter().flatten().zip(found.1.iter().flatten());
-    let lengths = off(lengths.chain(balls.map(|(a, b)| (*a, *b))));
+    let balls = Meridian::flat(expected.1)
+        .into_iter()
+        .zip(Meridian::flat(found.1));
+    let lengths = off(lengths.chain(balls));
     lengths.max(off((3..5).map(|i| (expected.0[i], found.0[i]))))
 }
 
 /// Balls of the turned bearing as they must be.
-fn balls(turn: Turn, of: impl Fn(usize) -> [f64; 2]) -> Vec<[f64; 2]> {
-    let mut turned = vec![[0.0; 2]; BALLS];
+fn balls(turn: Turn, of: impl Fn(usize) -> Meridian) -> Vec<Meridian> {
+    let mut turned = vec![Meridian::default(); BALLS];
     (0..BALLS).for_each(|ball| turned[turn.number(ball)] = of(ball));
     turned
 }
@@ -223,7 +225,7 @@ fn run(turn: Turn, model: &Model, start: &Displacements, push: [f64; 5]) -> Vec<
     let touching = turn.sign() * model.geometry.free_contact_angle();
     state.angles.fill(touching);
     state.approaches.fill(0.0);
-    state.forces.fill([0.0; 2]);
+    state.forces.fill(Meridian::default());
     let unloaded = PatchPlace {
         angle: touching,
         force: 0.0,
@@ -243,8 +245,8 @@ fn check_motion(turn: Turn, first: &[MotionState], turned: &[MotionState]) {
         let expected = balls(turn, |ball| turn.ball(a.balls[ball]));
         places = places.max(differences((b.shaft, &b.balls), (turn.place(a.shaft), &expected)));
         let speeds = balls(turn, |ball| {
-            let [r, z] = a.ball_velocities[ball];
-            [r, turn.sign() * z]
+            let Meridian { radial, axial } = a.ball_velocities[ball];
+            Meridian::new(radial, turn.sign() * axial)
         });
         let expected = (turn.both(a.shaft_velocity), &*speeds);
         rates = rates.max(differences((b.shaft_velocity, &b.ball_velocities), expected));
@@ -264,7 +266,7 @@ fn a_motion_turned_in_space_is_the_same_motion() {
     let loaded = equilibrium(&STAYS.model()).displacements;
     let push = [0.1, -0.2, -0.3, 5.0, -8.0];
     let first = run(STAYS, &STAYS.model(), &loaded, push);
-    let lifted = |s: &MotionState| s.forces.contains(&[0.0; 2]);
+    let lifted = |s: &MotionState| s.forces.contains(&Meridian::default());
     assert!(!lifted(&first[1]) && first.iter().skip(1).any(lifted));
     for turn in TURNS {
         check_motion(turn, &first, &run(turn, &turn.model(), &loaded, push));
@@ -298,12 +300,12 @@ fn a_motion_of_elastic_rings_turned_in_space_is_the_same_motion() {
     };
     let start = Displacements {
         shaft: [3e-6, -2e-6, 25e-6, 1e-4, -2e-4],
-        balls: vec![[0.0, 12e-6]; BALLS],
+        balls: vec![Meridian::new(0.0, 12e-6); BALLS],
         ..Displacements::zero(BALLS, [true; 2])
     };
     let push = [0.02, 0.03, -0.01, 0.5, -0.8];
     let first = run(STAYS, &model(STAYS), &start, push);
-    assert!(first[20].forces.iter().any(|f| f[0].hypot(f[1]) > 100.0));
+    assert!(first[20].forces.iter().any(|f| f.norm() > 100.0));
     for (half, turns) in [(false, 9.0), (true, 0.0), (true, 6.0)] {
         let angle = turns * TAU / 36.0;
         let turn = Turn { half, angle };

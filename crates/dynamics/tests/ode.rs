@@ -136,7 +136,7 @@ fn errors(mut model: Model) -> [f64; 3] {
     let mut initial = DVector::zeros(2 * n);
     (0..N_SHAFT).for_each(|i| initial[i] = start.displacements.shaft[i] / unit(i));
     for (b, ball) in start.displacements.balls.iter().enumerate() {
-        (0..2).for_each(|i| initial[N_SHAFT + 2 * b + i] = 1e6 * ball[i]);
+        (0..2).for_each(|i| initial[N_SHAFT + 2 * b + i] = 1e6 * ball.to_array()[i]);
     }
     // The classical fourth-order scheme at 1/1000 of the shortest period, 23 us: exact to 1e-9.
     let mut solver = Rk4::new(Bearing::new(&model), 0.0, initial, 1e6 * PERIOD, 0.02);
@@ -156,7 +156,7 @@ fn errors(mut model: Model) -> [f64; 3] {
         }
         let shaft = (0..N_SHAFT).map(|i| (state.shaft[i] - exact[i]).abs() * 1e-6 / unit(i));
         let balls = (0..18).flat_map(|b| [0, 1].map(|i| (b, i)));
-        let balls = balls.map(|(b, i)| (state.balls[b][i] - exact[N_SHAFT + 2 * b + i]).abs());
+        let balls = balls.map(|(b, i)| (state.balls[b].to_array()[i] - exact[N_SHAFT + 2 * b + i]).abs());
         shaft.chain(balls).fold(0.0, f64::max) / scale
     });
     println!("errors {found:?}");

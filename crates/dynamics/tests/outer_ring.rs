@@ -51,10 +51,9 @@ fn run(model: &Model, start: &StaticSolution, speeds: &RingSpeeds, n: usize) -> 
 
 /// Largest difference of two sets of contact forces over the largest force.
 fn difference(a: &MotionState, b: &MotionState) -> f64 {
-    let size = |f: &[f64; 2]| f[0].hypot(f[1]);
-    let largest = a.forces.iter().map(size).fold(0.0, f64::max);
+    let largest = a.forces.iter().map(|f| f.norm()).fold(0.0, f64::max);
     let pairs = a.forces.iter().zip(&b.forces);
-    let worst = pairs.map(|(a, b)| (a[0] - b[0]).hypot(a[1] - b[1]));
+    let worst = pairs.map(|(a, b)| (*a - *b).norm());
     worst.fold(0.0, f64::max) / largest
 }
 
@@ -81,7 +80,7 @@ fn balls_feel_the_cage_whichever_ring_turns() {
     let gamma = case.rigid().geometry.ball_diameter / case.rigid().geometry.pitch_diameter()
         * case.rigid().geometry.free_contact_angle().cos();
     let model = case.rigid();
-    let radius = model.geometry.ball_centre()[0] + outer.balls[0].displacement_m.radial;
+    let radius = model.geometry.ball_centre().radial + outer.balls[0].displacement_m.radial;
     let force = model.ball_mass() * radius * (0.5 * (1.0 + gamma) * SPEED).powi(2);
     let radial = |c: &dynamics::balls::ContactResult| c.force_n * c.contact_angle_rad.cos();
     let found = radial(&outer.balls[0].outer) - radial(&outer.balls[0].inner);

@@ -193,9 +193,8 @@ fn slow_motion_follows_the_quasi_static_run() {
         let rest = quasi.step(2 * step - 1, Some(&earlier)).unwrap();
         let largest = rest.balls.iter().map(|b| b.inner.force_n).fold(0.0, f64::max);
         for (ball, f) in rest.balls.iter().zip(state.forces.chunks_exact(2)) {
-            let size = |f: [f64; 2]| f[0].hypot(f[1]);
-            worst = worst.max((size(f[0]) - ball.inner.force_n).abs() / largest);
-            worst = worst.max((size(f[1]) - ball.outer.force_n).abs() / largest);
+            worst = worst.max((f[0].norm() - ball.inner.force_n).abs() / largest);
+            worst = worst.max((f[1].norm() - ball.outer.force_n).abs() / largest);
         }
         earlier = rest;
     }

@@ -318,7 +318,7 @@ fn any_start_leads_to_the_same_equilibrium() {
     far.displacements
         .balls
         .iter_mut()
-        .for_each(|b| *b = [-5e-4, 7e-4]);
+        .for_each(|b| *b = [-5e-4, 7e-4].into());
     let found = solver.solve(&model, Some(&far)).unwrap();
     for (a, b) in reference.balls.iter().zip(&found.balls) {
         assert!(

@@ -76,10 +76,9 @@ impl Run {
         for _ in 0..n {
             state = motion.step(&state, &mut cache).unwrap().0;
             let radial = |i: usize| elastic_radial(&self.model, &motion, &state, Side::BOTH[i], nodes[i]);
-            let size = |f: &[f64; 2]| f[0].hypot(f[1]);
             self.seen.push(Seen {
                 middle: motion.time(state.step) - 0.5 * self.dt,
-                forces: [0, 1].map(|i| state.forces.iter().skip(i).step_by(2).map(size).collect()),
+                forces: [0, 1].map(|i| state.forces.iter().skip(i).step_by(2).map(|f| f.norm()).collect()),
                 shaft: [0, 1, 2].map(|i| state.shaft[i]),
                 nodes: [radial(0), radial(1)],
             });

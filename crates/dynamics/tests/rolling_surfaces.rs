@@ -78,7 +78,7 @@ fn heavy() -> Model {
 }
 
 fn outer_force(state: &MotionState, ball: usize) -> f64 {
-    state.forces[2 * ball + 1][0].hypot(state.forces[2 * ball + 1][1])
+    state.forces[2 * ball + 1].norm()
 }
 
 /// Wrong: energy would be made or lost where balls enter a spall, meet its floor and leave it. Defect of the ledger
@@ -179,7 +179,7 @@ fn both_raceways_pass_under_the_ball_with_the_speed_of_the_formula() {
         ..Profiles::default()
     };
     let states = run(&with_strips(heavy(), Side::Inner, None, &profiles), dt, 0.6e-3);
-    let force = |s: &MotionState| s.forces[0][0].hypot(s.forces[0][1]);
+    let force = |s: &MotionState| s.forces[0].norm();
     let before = force(&states[0]);
     let fell = states
         .iter()

@@ -73,7 +73,7 @@ fn floating(speed: &Speed) -> Model {
     let mut model = Case::axial(0.0).rigid();
     model.effects.clear();
     model.geometry.inner_raceway_diameter -= 0.1e-3;
-    let back = model.geometry.ball_centre()[1] - model.geometry.groove_centre(Side::Inner)[1];
+    let back = model.geometry.ball_centre().axial - model.geometry.groove_centre(Side::Inner).axial;
     model.shaft[2] = ShaftDof::Prescribed(back);
     model.shaft_mass = 4.0;
     unbalanced(model, speed, 0.0)

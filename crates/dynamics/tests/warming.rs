@@ -2,7 +2,7 @@
 
 mod support;
 
-use contact::{BearingGeometry, Side};
+use contact::{BearingGeometry, Meridian, Side};
 use dynamics::kinematics::{RingSpeeds, Rolling, Speed};
 use dynamics::motion::{Motion, MotionSettings, MotionState, StepCache};
 use dynamics::mounting::{Conditions, Mounting, RadialProfile, RingTemperature, TemperatureSchedule};
@@ -101,7 +101,7 @@ fn a_schedule_that_stays_is_a_constant_to_the_bit() {
     let run = |model: &Model| {
         let (states, _) = steps(model, 1e-5, 4);
         let last = states.last().unwrap();
-        let bits = last.forces.iter().flatten().chain(&last.shaft);
+        let bits = Meridian::flat(&last.forces).into_iter().chain(last.shaft);
         bits.map(|x| x.to_bits()).collect::<Vec<_>>()
     };
     assert_eq!(run(&a), run(&b));
@@ -121,8 +121,8 @@ fn steps(model: &Model, dt: f64, n: usize) -> (Vec<MotionState>, f64) {
             let side = Side::BOTH[index % 2];
             let [from, to] = ends.each_ref().map(|at| at.groove_motion(side, None));
             let grown = ends[1].touching_growth(side) - ends[0].touching_growth(side);
-            let moved = force[0] * (from[0] - to[0]) + force[1] * (from[1] - to[1]);
-            work += moved - force[0].hypot(force[1]) * grown;
+            let moved = force.dot(from - to);
+            work += moved - force.norm() * grown;
         }
         states.push(next);
     }

@@ -184,7 +184,7 @@ fn the_ledger_closes_while_a_mark_is_rolled_over() {
                 let time = dt * *step as f64;
                 from < time && time < to
             });
-            let force = |s: &MotionState| s.forces[1][0].hypot(s.forces[1][1]);
+            let force = |s: &MotionState| s.forces[1].norm();
             within.map(|(_, s)| force(s)).fold(f64::INFINITY, f64::min)
         };
         let before = equilibrium(&heavy(&Case::axial(2000.0))).balls[0].outer.force_n;

@@ -70,12 +70,12 @@ pub fn largest_of_body(grid: &Grid, values: &[f64], body: u8) -> f64 {
 }
 
 fn groove(geometry: &BearingGeometry, side: Side) -> Groove {
-    let [centre_radius, centre_z] = geometry.groove_centre(side);
+    let centre = geometry.groove_centre(side);
     Groove {
         side,
-        centre_radius,
+        centre_radius: centre.radial,
         groove_radius: geometry.groove_radius(side),
-        centre_z,
+        centre_z: centre.axial,
     }
 }
 

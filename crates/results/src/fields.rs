@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use checkpoint::{Body, CellFields, PointFields, StateArray, StepRecord};
-use contact::{BearingGeometry, Side};
+use contact::{BearingGeometry, Meridian, Side};
 use dynamics::balls::BallResult;
 use dynamics::{Model, StaticSolution};
 use fem::stress::von_mises;
@@ -33,7 +33,7 @@ pub fn bodies(model: &Model) -> Vec<Body> {
     let centres: Vec<[f64; 3]> = (0..model.geometry.n_balls)
         .map(|ball| {
             let (sin, cos) = model.geometry.azimuth(ball).sin_cos();
-            [centre[0] * cos, centre[0] * sin, centre[1]]
+            [centre.radial * cos, centre.radial * sin, centre.axial]
         })
         .collect();
     bodies.push(Body::balls(
@@ -214,11 +214,11 @@ fn balls(
     for (i, ball) in balls.iter().enumerate() {
         let (sin, cos) = ball.azimuth_rad.sin_cos();
         let (sin_0, cos_0) = placed.azimuth(i).sin_cos();
-        let radius = centre[0] + ball.displacement_m.radial;
+        let radius = centre.radial + ball.displacement_m.radial;
         let moved = [
-            radius * cos - from[0] * cos_0,
-            radius * sin - from[0] * sin_0,
-            centre[1] - from[1] + ball.displacement_m.axial,
+            radius * cos - from.radial * cos_0,
+            radius * sin - from.radial * sin_0,
+            centre.axial - from.axial + ball.displacement_m.axial,
         ];
         displacement.push(moved);
         for (side, list) in Side::BOTH.into_iter().zip(&mut forces) {
@@ -237,7 +237,7 @@ fn state(solution: &StaticSolution) -> BTreeMap<String, StateArray> {
         ),
         (
             "balls".to_string(),
-            StateArray::Real(displacements.balls.concat()),
+            StateArray::Real(Meridian::flat(&displacements.balls)),
         ),
     ])
 }

@@ -10,7 +10,7 @@ use std::time::Instant;
 
 use checkpoint::{CellFields, GrowingFile, Output, PointFields, Stamps, StateArray, StepRecord};
 use comm::print;
-use contact::Side;
+use contact::{Meridian, Side};
 use dynamics::balls::BallResult;
 use dynamics::costs::{FACTOR, SEARCH};
 use dynamics::{Mode, ModeSet, Model};
@@ -138,7 +138,7 @@ impl ModeFiles {
             });
         }
         for ball in 0..model.geometry.n_balls {
-            let [radial, axial] = mode.shape.balls.get(ball).copied().unwrap_or_default();
+            let Meridian { radial, axial } = mode.shape.balls.get(ball).copied().unwrap_or_default();
             let (sin, cos) = model.geometry.azimuth(ball).sin_cos();
             displacement.push([radial * cos, radial * sin, axial].map(|u| AMPLITUDE * u));
         }

@@ -1,7 +1,7 @@
 //! Probes: single numbers of a run, a line per step in `probes.csv`. The scene's own documentation says what they are.
 
 use anyhow::anyhow;
-use contact::Side;
+use contact::{Meridian, Side};
 use dynamics::Model;
 use dynamics::balls::BallResult;
 use dynamics::kinematics::Speed;
@@ -287,7 +287,7 @@ fn node_values(probe: &PlacedNodeProbe, ring: &RingField<'_>, stress: [f64; 6]) 
 fn contact_values(probe: &ContactProbe, model: &Model, ball: &BallResult) -> Vec<f64> {
     let side = side_of(probe.ring);
     let force = force_on_ball(side, ball);
-    let [radial, axial] = model.geometry.ball_centre();
+    let Meridian { radial, axial } = model.geometry.ball_centre();
     let (sin, cos) = ball.azimuth_rad.sin_cos();
     let radius = radial + ball.displacement_m.radial;
     let centre = [radius * cos, radius * sin, axial + ball.displacement_m.axial];

@@ -5,7 +5,7 @@
 
 use anyhow::{anyhow, ensure};
 use checkpoint::StateArray;
-use contact::Side;
+use contact::{Meridian, Side};
 use dynamics::Model;
 use dynamics::displacements::Displacements;
 use dynamics::points::PointStart;
@@ -31,13 +31,13 @@ pub fn store(displacements: &Displacements, columns: &ContactColumns) -> Arrays 
     } = displacements;
     let mut all = vec![
         (SHAFT, shaft.to_vec()),
-        (BALLS, balls.concat()),
+        (BALLS, Meridian::flat(balls)),
         (SEAT, vec![*seat]),
     ];
     for side in Side::BOTH {
         let i = side.index();
         if !grooves[i].is_empty() {
-            all.push((GROOVES[i], grooves[i].concat()));
+            all.push((GROOVES[i], Meridian::flat(&grooves[i])));
         }
         if let Some(columns) = &columns[i] {
             all.push((COLUMNS[i], columns.clone()));
@@ -99,7 +99,7 @@ pub fn load(mut arrays: Arrays, model: &Model) -> anyhow::Result<(Displacements,
     for side in Side::BOTH {
         let i = side.index();
         if model.ring(side).is_some() {
-            grooves[i] = take(GROOVES[i], 2 * n_balls)?.as_chunks().0.to_vec();
+            grooves[i] = Meridian::list(&take(GROOVES[i], 2 * n_balls)?);
             columns[i] = Some(take(COLUMNS[i], (2 * n_balls).pow(2))?);
         }
     }
@@ -111,7 +111,7 @@ pub fn load(mut arrays: Arrays, model: &Model) -> anyhow::Result<(Displacements,
     );
     let displacements = Displacements {
         shaft: std::array::from_fn(|i| shaft[i]),
-        balls: balls.as_chunks().0.to_vec(),
+        balls: Meridian::list(&balls),
         grooves,
         seat,
     };

@@ -135,7 +135,7 @@ fn on_shaft(model: &Model) -> Option<(&RingModel, &Arc<SeatTie>)> {
 
 /// In the frame of the ring, which turns.
 fn at_axis_point(model: &Model, tie: &SeatTie, motion: &[f64]) -> [f64; N_SHAFT] {
-    let [_, z] = model.geometry.groove_centre(ON_SHAFT);
+    let z = model.geometry.groove_centre(ON_SHAFT).axial;
     let [ux, uy, uz, rx, ry, _] = tie.space.mean_motion(motion, z);
     [ux, uy, uz, rx, ry]
 }

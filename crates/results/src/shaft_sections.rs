@@ -66,7 +66,7 @@ impl ShaftBodyLine {
 /// A section of these nodes; None where they do not make one.
 fn section(mounted: &MountedBearing, body: &ShownBody<'_>, nodes: Vec<usize>) -> Option<ShaftSection> {
     let (z, motion) = motion_of(body.mesh, nodes)?;
-    let [_, origin] = mounted.model.geometry.groove_centre(ON_SHAFT);
+    let origin = mounted.model.geometry.groove_centre(ON_SHAFT).axial;
     let from_bearing = [0.0, 0.0, z + body.shift[2] - origin];
     let place = &mounted.place;
     Some(ShaftSection {

@@ -7,7 +7,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use anyhow::{anyhow, ensure};
 use checkpoint::StateArray;
-use contact::Side;
+use contact::{Meridian, Side};
 use dynamics::motion::RingState;
 use dynamics::motion::{
     BodyState, CageLedger, CageState, ContactTraction, FreeState, FrictionLedger, Ledger, MotionState,
@@ -79,23 +79,25 @@ fn exchange(state: &mut MotionState, shape: &StateShape, port: &mut Port<'_>) ->
     let n_sites = 2 * shape.n_balls;
     port.counter("steps", step)?;
     port.counter("rung", rung)?;
-    port.rows("balls", balls, shape.n_balls)?;
-    port.rows("ball_velocities", ball_velocities, shape.n_balls)?;
-    port.rows("ball_accelerations", ball_accelerations, shape.n_balls)?;
+    port.meridians("balls", balls, shape.n_balls)?;
+    port.meridians("ball_velocities", ball_velocities, shape.n_balls)?;
+    port.meridians("ball_accelerations", ball_accelerations, shape.n_balls)?;
     port.values("shaft", shaft)?;
     port.values("shaft_velocity", shaft_velocity)?;
     port.values("shaft_acceleration", shaft_acceleration)?;
     if shape.has_seat {
         port.values("seat", seat.get_or_insert_default())?;
     }
-    port.rows("trend", trend, 3 * shape.n_balls)?;
-    port.rows("forces", forces, n_sites)?;
+    port.meridians("trend", trend, 3 * shape.n_balls)?;
+    port.meridians("forces", forces, n_sites)?;
     port.list("angles", angles, n_sites)?;
     port.list("approaches", approaches, n_sites)?;
     for (part, places) in places.iter_mut().enumerate() {
-        let mut rows = places.iter().map(PatchPlace::to_row).collect();
+        let row = |place: &PatchPlace| [place.angle, place.force];
+        let mut rows: Vec<_> = places.iter().map(row).collect();
         port.rows(&format!("places_{part}"), &mut rows, n_sites)?;
-        *places = rows.into_iter().map(PatchPlace::from_row).collect();
+        let rows = rows.into_iter();
+        *places = rows.map(|[angle, force]| PatchPlace { angle, force }).collect();
     }
     if shape.has_free_balls {
         exchange_free(free.get_or_insert_default(), shape, port)?;
@@ -316,6 +318,14 @@ impl Port<'_> {
         let mut flat = rows.concat();
         self.list(name, &mut flat, N * n)?;
         *rows = flat.as_chunks::<N>().0.to_vec();
+        Ok(())
+    }
+
+    /// A list of `n` vectors, as rows [radial, axial].
+    fn meridians(&mut self, name: &str, vectors: &mut Vec<Meridian>, n: usize) -> anyhow::Result<()> {
+        let mut flat = Meridian::flat(vectors);
+        self.list(name, &mut flat, 2 * n)?;
+        *vectors = Meridian::list(&flat);
         Ok(())
     }
 

@@ -77,12 +77,12 @@ impl Effect for BallCentrifugal {
     }
 
     fn add_loads(&self, model: &Model, now: &Now, loads: &mut Loads) -> Result<(), DynamicsError> {
-        let radius = model.geometry.ball_centre()[0];
+        let radius = model.geometry.ball_centre().radial;
         for ball in 0..model.geometry.n_balls {
             let turning = self.ball_speeds.of_ball(&model.geometry, now, self.slip, ball);
             let cage = turning.cage_speed(&self.speeds, now.time);
             let slope = model.ball_mass() * cage * cage;
-            loads.balls[ball][0] += slope * radius;
+            loads.balls[ball].radial += slope * radius;
             loads.ball_slopes[ball] += slope;
         }
         loads.follows_angles |= self.ball_speeds == BallSpeeds::OuterControl;
@@ -96,7 +96,7 @@ impl Effect for BallCentrifugal {
         let cage = |kinematics: Kinematics| kinematics.cage_speed(&self.speeds, now.time);
         let free = cage(Kinematics::new(&model.geometry, self.slip));
         let slope = model.ball_mass() * free.powi(2);
-        let force = slope * model.geometry.ball_centre()[0];
+        let force = slope * model.geometry.ball_centre().radial;
         // By what share of the force its angles change that of a ball, over its contact force.
         let error = |ball: &BallResult| {
             let angles = [ball.inner.contact_angle_rad, ball.outer.contact_angle_rad];

@@ -55,7 +55,7 @@ impl table::EffectTable for BallDragTable {
         }
         let turning = case.kinematics();
         let size = |speeds: BothRings| turning.of_cage(speeds).abs();
-        let speed = case.model.geometry.ball_centre()[0] * size(case.speeds.at_largest(size));
+        let speed = case.model.geometry.ball_centre().radial * size(case.speeds.at_largest(size));
         let force = table.drag().coefficient(case.model) * speed * speed;
         let ratio = force / (USUAL_FRICTION * load);
         let estimate = format!(

@@ -175,8 +175,8 @@ impl Effect for Gravity {
         let mass = model.ball_mass();
         for (ball, load) in loads.balls.iter_mut().enumerate() {
             let (sin, cos) = (model.geometry.azimuth(ball) + now.cage_angle).sin_cos();
-            load[0] += mass * (g[0] * cos + g[1] * sin);
-            load[1] += mass * g[2];
+            load.radial += mass * (g[0] * cos + g[1] * sin);
+            load.axial += mass * g[2];
         }
         loads.add_shaft_force_at(model.load_point, g.map(|a| model.shaft_mass * a));
         if let Some(inertia) = model.carried_inertia().filter(|_| model.weighs_carried) {

@@ -204,7 +204,7 @@ impl Effect for GyroscopicMoment {
                 let (sin, cos) = now.contact_angle(&model.geometry, ball, side).sin_cos();
                 // The ring gets the negative of the force on the ball.
                 let sign = side.sign();
-                loads.add_contact_force(ball, side, [-sign * size * sin, sign * size * cos]);
+                loads.add_contact_force(ball, side, [-sign * size * sin, sign * size * cos].into());
                 if side == Side::Inner {
                     // From the contact to the groove centre, a groove radius away.
                     let couple = -model.geometry.groove_radius(side) * size;

@@ -1,7 +1,7 @@
 //! Loads on the bodies at one instant, and what is known of the bearing at it.
 
 use body::BodyLoad;
-use contact::{BearingGeometry, Side};
+use contact::{BearingGeometry, Meridian, Side};
 use input::Schedule;
 pub use ring::FrameTurn;
 
@@ -21,8 +21,8 @@ pub struct Loads {
     pub ring_on_seat: f64,
     /// Force along z on what slides with the seat of the outer ring besides a flexible ring, N.
     pub seat: f64,
-    /// Force on each ball [radial, axial] at its just-touching position, N.
-    pub balls: Vec<[f64; 2]>,
+    /// Force on each ball at its just-touching position, N.
+    pub balls: Vec<Meridian>,
     /// Growth of the radial force on each ball with its radial displacement, N/m.
     pub ball_slopes: Vec<f64>,
     /// Whether forces on balls or contacts depend on the contact angles.
@@ -31,9 +31,9 @@ pub struct Loads {
     pub rings: [Option<Vec<f64>>; 2],
     /// What the nodes of a flexible ring weigh, besides those; None: nothing.
     pub weights: [Option<RingWeight>; 2],
-    /// Force on the ring at each contact [radial, axial] besides the normal one, N, by site (2 ball + side), acting
+    /// Force on the ring at each contact besides the normal one, N, by site (2 ball + side), acting
     /// at the groove centre; the ball gets its negative. Empty: no effect adds any.
-    pub contacts: Vec<[f64; 2]>,
+    pub contacts: Vec<Meridian>,
     /// Turning of the rings' frames, inner first, where their inertia is called for.
     pub frames: [Option<FrameTurn>; 2],
     /// Loads of an equilibrium on all of the bodies in which the rings sit, inner first, in the frames of the rings.
@@ -73,7 +73,7 @@ impl Loads {
             seat: 0.0,
             ball_slopes: vec![0.0; n_balls],
             follows_angles: false,
-            balls: vec![[0.0; 2]; n_balls],
+            balls: vec![Meridian::default(); n_balls],
             rings: [None, None],
             weights: [None, None],
             contacts: Vec::new(),
@@ -93,11 +93,11 @@ impl Loads {
         self.shaft[4] += distance * force[0];
     }
 
-    /// Adds a force (N) [radial, axial] on the ring at one contact; the ball gets its negative.
-    pub fn add_contact_force(&mut self, ball: usize, side: Side, force: [f64; 2]) {
-        self.contacts.resize(2 * self.balls.len(), [0.0; 2]);
+    /// Adds a force (N) on the ring at one contact; the ball gets its negative.
+    pub fn add_contact_force(&mut self, ball: usize, side: Side, force: Meridian) {
+        self.contacts.resize(2 * self.balls.len(), Meridian::default());
         let sum = &mut self.contacts[2 * ball + side.index()];
-        (sum[0], sum[1]) = (sum[0] + force[0], sum[1] + force[1]);
+        *sum = *sum + force;
     }
 
     /// Adds nodal body loads (N) to a flexible ring; shaft and housing carry the `resultant`: force x, y, z, N,
@@ -179,8 +179,8 @@ pub struct AtEquilibrium<'a> {
     pub approaches: &'a [f64],
     /// Strips, by site; None: it has none.
     pub strips: &'a [Option<&'a Strips>],
-    /// Displacements of the balls [radial, axial], m.
-    pub balls: &'a [[f64; 2]],
+    /// Displacements of the balls, m.
+    pub balls: &'a [Meridian],
 }
 
 impl Now<'_> {

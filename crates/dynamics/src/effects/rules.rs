@@ -113,7 +113,7 @@ impl Case<'_> {
         let turning = self.kinematics();
         let size = |speeds: BothRings| turning.of_cage(speeds).abs();
         let cage = size(self.speeds.at_largest(size));
-        self.model.ball_mass() * self.model.geometry.ball_centre()[0] * cage * cage
+        self.model.ball_mass() * self.model.geometry.ball_centre().radial * cage * cage
     }
 
     /// Radii of the bottom of a ring's groove and of its seat, m.

@@ -41,7 +41,7 @@ impl SteadyBalls {
         let drag = model.effects.iter().map(|effect| effect.drag(model)).sum();
         let balls: Vec<SteadyBall<'_>> = (0..model.geometry.n_balls)
             .map(|ball| SteadyBall {
-                out: model.geometry.ball_centre()[0] + seen.balls[ball][0],
+                out: model.geometry.ball_centre().radial + seen.balls[ball].radial,
                 inertia: model.ball_inertia(),
                 drag,
                 contacts: Side::BOTH
@@ -90,22 +90,22 @@ impl SteadyBalls {
 
     /// Adds tractions and centrifugal forces.
     pub fn add_loads(&self, model: &Model, now: &Now, loads: &mut Loads) {
-        let radius = model.geometry.ball_centre()[0];
+        let radius = model.geometry.ball_centre().radial;
         for (ball, (rolls, contacts)) in self.balls.iter().zip(&self.contacts).enumerate() {
             let slope = model.ball_mass() * rolls.orbit * rolls.orbit;
-            loads.balls[ball][0] += slope * radius;
+            loads.balls[ball].radial += slope * radius;
             loads.ball_slopes[ball] += slope;
             for side in Side::BOTH {
                 let contact = &contacts[side.index()];
                 let [n_r, n_z] = contact.normal;
                 let [t, q, m_t, m_q, m_n] = rolls.tractions[side.index()].action;
                 // On the ring, along q = (-n_z, n_r).
-                loads.add_contact_force(ball, side, [q * n_z, -q * n_r]);
+                loads.add_contact_force(ball, side, [q * n_z, -q * n_r].into());
                 if side == Side::Outer {
                     continue;
                 }
                 let (sin, cos) = (model.geometry.azimuth(ball) + now.cage_angle).sin_cos();
-                let height = model.geometry.ball_centre()[1] - model.geometry.groove_centre(side)[1];
+                let height = model.geometry.ball_centre().axial - model.geometry.groove_centre(side).axial;
                 let height = height + contact.lever * n_z;
                 loads.shaft[0] += t * sin;
                 loads.shaft[1] -= t * cos;
@@ -215,6 +215,6 @@ fn lines(model: &Model, (seen, angles): (AtEquilibrium<'_>, &[f64]), site: usize
 
 /// Force of a contact that the round-off of places alone makes, N: a ball that just touches is not loaded.
 fn round_off(model: &Model, side: Side) -> f64 {
-    let place = 16.0 * f64::EPSILON * model.geometry.ball_centre()[0];
+    let place = 16.0 * f64::EPSILON * model.geometry.ball_centre().radial;
     model.hertz[side.index()].stiffness * place.powf(1.5)
 }

@@ -3,6 +3,8 @@
 //! Over a step a contact keeps the surface and the mounting of its middle, so that its forces have a potential. Its
 //! energies on the surfaces, or as it is mounted, at the ends are what the ledger counts the work of these by.
 
+use contact::Meridian;
+
 use super::raceway_contact::RacewayContacts;
 use crate::system::Lengths;
 
@@ -19,7 +21,7 @@ impl RacewayContacts {
         let mut sum = [0.0; 2];
         for (index, site) in self.sites.iter().enumerate() {
             let energies = match site.strip_site() {
-                Some(strips) => strips.energies_at_ends(lengths.of::<2>(index)),
+                Some(strips) => strips.energies_at_ends(lengths.of(index).map(Meridian::from)),
                 None => [0, 1].map(|end: usize| smooth[end][index].force.energy),
             };
             (0..2).for_each(|end| sum[end] += energies[end]);
@@ -37,7 +39,7 @@ impl RacewayContacts {
             for (site, l) in moved.sites.iter_mut().zip(lengths.as_chunks_mut::<2>().0) {
                 if let Some(ends) = &site.ends {
                     let mounted = ends[end];
-                    (0..2).for_each(|i| l[i] += mounted.reach[i] - site.reach[i]);
+                    *l = (Meridian::from(*l) + (mounted.reach - site.reach)).to_array();
                     site.touching = mounted.touching;
                 }
             }

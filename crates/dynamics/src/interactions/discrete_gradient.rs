@@ -34,13 +34,16 @@ pub enum ContactScheme {
     Pointwise,
 }
 
+/// Growth of a force [radial, axial] with l, N/m, by rows of forces.
+pub type ContactTangent = [[f64; 2]; 2];
+
 /// Mean force of one contact over a step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct MeanForce {
     /// Force on the ring [radial, axial], N; the ball gets its negative.
     pub force: [f64; 2],
     /// Derivative with respect to l1, N/m.
-    pub tangent: [[f64; 2]; 2],
+    pub tangent: ContactTangent,
     /// Energy lost to contact damping in this step, J.
     pub loss: f64,
     /// Energy lost by moving the force to the weighted time, J.
@@ -126,7 +129,7 @@ pub struct BallMeans {
     /// Each contact, inner first.
     pub contacts: [MeanForce; 2],
     /// Derivative of the force of each with respect to l1 of the other, N/m.
-    pub across: [[[f64; 2]; 2]; 2],
+    pub across: [ContactTangent; 2],
 }
 
 /// Lengths of a ball's contacts over a step.

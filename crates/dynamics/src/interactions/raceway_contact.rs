@@ -10,11 +10,11 @@
 use std::sync::Arc;
 
 use contact::law::ContactForce;
-use contact::{BallLaws, ContactLaw, NodalWeights, Side, Unevenness};
+use contact::{BallLaws, BySide, ContactLaw, Meridian, NodalWeights, Side, Unevenness};
 use timer::SharedLaps;
 
 use super::contact_damping::{ContactDamping, viscous};
-use super::discrete_gradient::{BallLengths, BallMeans, ContactScheme, mean_forces};
+use super::discrete_gradient::{BallLengths, BallMeans, ContactScheme, ContactTangent, mean_forces};
 use super::strip_contact::{Lateral, StripSite};
 use crate::model::Model;
 use crate::mounting::Mounting;
@@ -34,8 +34,8 @@ pub struct Site {
     pub azimuth: f64,
     /// The same on the mesh of the ring, which may have turned, rad.
     pub ring_azimuth: f64,
-    /// Groove centre to ball centre at zero displacement [radial, axial], m.
-    pub reach: [f64; 2],
+    /// Groove centre to ball centre at zero displacement, m.
+    pub reach: Meridian,
     /// |l| at which they touch, R - D_w/2, m.
     pub touching: f64,
     /// Radius of the groove centre from the axis: the lever of what carries a ring, m.
@@ -55,8 +55,8 @@ pub struct Site {
 /// What temperature changes of a contact, at one end of a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MountedEnd {
-    /// Groove centre to ball centre at zero displacement [radial, axial], m.
-    pub reach: [f64; 2],
+    /// Groove centre to ball centre at zero displacement, m.
+    pub reach: Meridian,
     /// |l| at which they touch, m.
     pub touching: f64,
 }
@@ -65,11 +65,11 @@ pub struct MountedEnd {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SiteState {
     /// Unit vector from groove centre to ball centre.
-    pub normal: [f64; 2],
+    pub normal: Meridian,
     /// |l|, m.
     pub length: f64,
     /// Change of the approach per unit of l besides |l|, from the facets.
-    pub slope: [f64; 2],
+    pub slope: Meridian,
     /// Force, its tangent over the contact's own approach, and energy.
     pub force: ContactForce,
     /// The force across the normal, of strips only.
@@ -114,8 +114,8 @@ impl Site {
         }
     }
 
-    /// Motion [radial, axial] of the groove centre per unit of each dof of what carries the ring (tilts in rad).
-    pub fn carrier_rows(&self) -> [[f64; 2]; 5] {
+    /// Motion of the groove centre per unit of each dof of what carries the ring (tilts in rad).
+    pub fn carrier_rows(&self) -> [Meridian; 5] {
         let (sin, cos) = self.azimuth.sin_cos();
         [
             [cos, 0.0],
@@ -124,6 +124,7 @@ impl Site {
             [0.0, self.lever * sin],
             [0.0, -self.lever * cos],
         ]
+        .map(Meridian::from)
     }
 
     /// The circle of groove centres.
@@ -136,23 +137,21 @@ impl Site {
     }
 
     /// Contact angle at l, rad.
-    pub fn angle(&self, l: [f64; 2]) -> f64 {
+    pub fn angle(&self, l: Meridian) -> f64 {
         let sign = self.side.sign();
-        (sign * l[1]).atan2(sign * l[0])
+        (sign * l.axial).atan2(sign * l.radial)
     }
 
     /// l of a ball between rings that do not deform, the inner one on a shaft at these displacements, m and rad.
-    pub fn reach_of_rigid(&self, shaft: [f64; 5], ball: [f64; 2]) -> [f64; 2] {
-        let mut l = [0, 1].map(|i| self.reach[i] + ball[i]);
-        if self.side == Side::Inner {
-            let more = self.circle().lengths([shaft[3], shaft[4]]);
-            let rows = self.carrier_rows();
-            for (i, l) in l.iter_mut().enumerate() {
-                let of_shaft: f64 = rows.iter().zip(shaft).map(|(row, q)| row[i] * q).sum();
-                *l += more[i] - of_shaft;
-            }
+    pub fn reach_of_rigid(&self, shaft: [f64; 5], ball: Meridian) -> Meridian {
+        let l = self.reach + ball;
+        if self.side == Side::Outer {
+            return l;
         }
-        l
+        let more = Meridian::from(self.circle().lengths([shaft[3], shaft[4]]));
+        let by_dof = self.carrier_rows().into_iter().zip(shaft);
+        let of_shaft = by_dof.map(|(row, q)| row.map(|r| r * q)).reduce(|a, b| a + b);
+        l + (more - of_shaft.unwrap_or_default())
     }
 
     /// The contact as one of strips, if it has them.
@@ -162,17 +161,17 @@ impl Site {
     }
 
     /// The contact at l, still without its force, and its approach, m.
-    fn place(&self, l: [f64; 2]) -> (SiteState, f64) {
-        let length = l[0].hypot(l[1]);
+    fn place(&self, l: Meridian) -> (SiteState, f64) {
+        let length = l.norm();
         let normal = if length > 0.0 {
-            [l[0] / length, l[1] / length]
+            l.map(|l| l / length)
         } else {
-            [self.side.sign(), 0.0]
+            Meridian::new(self.side.sign(), 0.0)
         };
         let mut state = SiteState {
             normal,
             length,
-            slope: [0.0; 2],
+            slope: Meridian::default(),
             force: ContactForce::default(),
             lateral: None,
             angle: self.angle(normal),
@@ -182,7 +181,8 @@ impl Site {
             let (offset, derivative) = unevenness.at(state.angle);
             approach += offset;
             // d angle / dl = (-n_axial, n_radial) / |l|.
-            state.slope = [-derivative * normal[1] / length, derivative * normal[0] / length];
+            let [radial, axial] = normal.to_array();
+            state.slope = Meridian::new(-derivative * axial / length, derivative * radial / length);
         }
         (state, approach)
     }
@@ -199,7 +199,7 @@ fn laws([inner, outer]: &BallSites) -> BallLaws {
 }
 
 /// Both contacts of a ball at l, and the growth of their forces with both approaches, N/m.
-fn ball_states(sites: &BallSites, l: [[f64; 2]; 2]) -> ([SiteState; 2], [[f64; 2]; 2]) {
+fn ball_states(sites: &BallSites, l: BySide<Meridian>) -> (BySide<SiteState>, BySide<BySide<f64>>) {
     let placed = [0, 1].map(|k| sites[k].place(l[k]));
     let found = laws(sites).evaluate(placed.map(|(_, approach)| approach));
     let state = |k: usize| {
@@ -216,32 +216,28 @@ fn ball_states(sites: &BallSites, l: [[f64; 2]; 2]) -> ([SiteState; 2], [[f64; 2
 }
 
 impl SiteState {
-    /// Force on the ring [radial, axial], N.
-    pub fn on_ring(&self) -> [f64; 2] {
+    /// Force on the ring, N.
+    pub fn on_ring(&self) -> Meridian {
         let normal = self.normal.map(|n| self.force.force * n);
         match self.lateral.filter(|_| self.length > 0.0) {
-            Some(lateral) => {
-                let force = lateral.force(self.normal, self.length);
-                [normal[0] + force[0], normal[1] + force[1]]
-            }
+            Some(lateral) => normal + lateral.force(self.normal, self.length),
             None => normal,
         }
     }
 
     /// l, m.
-    pub fn reach(&self) -> [f64; 2] {
+    pub fn reach(&self) -> Meridian {
         self.normal.map(|n| n * self.length)
     }
 
     /// Derivative of Q n with respect to l: k n (n + slope)^T + Q/|l| (1 - n n^T); without slope the Hessian of V(|l|).
-    pub fn tangent(&self) -> [[f64; 2]; 2] {
-        let n = self.normal;
+    pub fn tangent(&self) -> ContactTangent {
+        let (n, gap) = (self.normal.to_array(), self.gap_slope().to_array());
         let across = if self.length > 0.0 {
             self.force.force / self.length
         } else {
             0.0
         };
-        let gap = self.gap_slope();
         let mut tangent = [0, 1].map(|i| {
             [0, 1].map(|j| {
                 let identity = if i == j { 1.0 } else { 0.0 };
@@ -249,7 +245,7 @@ impl SiteState {
             })
         });
         if let Some(lateral) = self.lateral.filter(|_| self.length > 0.0) {
-            let more = lateral.tangent(n, self.length);
+            let more = lateral.tangent(self.normal, self.length);
             let sums = tangent.as_flattened_mut().iter_mut();
             sums.zip(more.as_flattened()).for_each(|(sum, t)| *sum += t);
         }
@@ -257,13 +253,13 @@ impl SiteState {
     }
 
     /// Growth of the approach with l.
-    fn gap_slope(&self) -> [f64; 2] {
-        [0, 1].map(|i| self.normal[i] + self.slope[i])
+    fn gap_slope(&self) -> Meridian {
+        self.normal + self.slope
     }
 }
 
-/// Force on the ring of every contact [radial, axial], N.
-pub fn on_rings(states: &[SiteState]) -> Vec<[f64; 2]> {
+/// Force on the ring of every contact, N.
+pub fn on_rings(states: &[SiteState]) -> Vec<Meridian> {
     states.iter().map(SiteState::on_ring).collect()
 }
 
@@ -289,15 +285,15 @@ pub struct GrooveBodies {
     pub carrier: Option<usize>,
     /// The lumped body with which the groove tilts, if it may: that is finite.
     pub tilting: Option<usize>,
-    /// Motion of the groove centres that stays [radial, axial], m, by ball; empty is none.
-    pub held: Vec<[f64; 2]>,
+    /// Motion of the groove centres that stays, m, by ball; empty is none.
+    pub held: Vec<Meridian>,
 }
 
 /// Lengths of a ball's contacts: l of the inner one, then of the outer one.
 const N_ROWS: usize = 4;
 
 /// Tangent over all lengths of a ball, row-major, from that of each contact and of each force over the other's length.
-fn tangent_of_ball(own: [[[f64; 2]; 2]; 2], across: [[[f64; 2]; 2]; 2]) -> [f64; N_ROWS * N_ROWS] {
+fn tangent_of_ball(own: BySide<ContactTangent>, across: BySide<ContactTangent>) -> [f64; N_ROWS * N_ROWS] {
     std::array::from_fn(|i| {
         let (row, column) = (i / N_ROWS, i % N_ROWS);
         let (force, length) = (row / 2, column / 2);
@@ -315,9 +311,9 @@ fn tangent_of_ball(own: [[[f64; 2]; 2]; 2], across: [[[f64; 2]; 2]; 2]) -> [f64;
 pub struct RacewayContacts {
     /// The contacts.
     pub sites: Vec<Site>,
-    /// Additional forces on the rings at the contacts [radial, axial], N, by site; the balls get their negatives. None
+    /// Additional forces on the rings at the contacts, N, by site; the balls get their negatives. None
     /// when empty.
-    pub dead: Vec<[f64; 2]>,
+    pub dead: Vec<Meridian>,
     /// Means over a step; None: forces of an instant.
     pub means: Option<Means>,
     links: Vec<Link>,
@@ -325,7 +321,7 @@ pub struct RacewayContacts {
 
 impl RacewayContacts {
     /// Contacts that are not connected yet.
-    pub fn new(sites: Vec<Site>, dead: Vec<[f64; 2]>, means: Option<Means>) -> RacewayContacts {
+    pub fn new(sites: Vec<Site>, dead: Vec<Meridian>, means: Option<Means>) -> RacewayContacts {
         RacewayContacts {
             links: Vec::new(),
             sites,
@@ -349,9 +345,12 @@ impl RacewayContacts {
         self.ball_states(lengths).flat_map(|(states, _)| states).collect()
     }
 
-    fn ball_states(&self, lengths: &[f64]) -> impl Iterator<Item = ([SiteState; 2], [[f64; 2]; 2])> {
+    fn ball_states(&self, lengths: &[f64]) -> impl Iterator<Item = (BySide<SiteState>, BySide<BySide<f64>>)> {
         let l = lengths.as_chunks::<2>().0.as_chunks::<2>().0;
-        self.balls().zip(l).map(|(sites, l)| ball_states(sites, *l))
+        let vectors = |l: &[_; 2]| l.map(Meridian::from);
+        self.balls()
+            .zip(l)
+            .map(move |(sites, l)| ball_states(sites, vectors(l)))
     }
 
     /// Mean forces over a step without the dead ones; `costs` gets the time of the damping.
@@ -377,7 +376,7 @@ impl RacewayContacts {
                 for (k, site) in sites.iter().enumerate() {
                     if let Some(strips) = site.strip_site() {
                         let damping = means.damping.as_ref().map(|damping| (damping, means.dt));
-                        found.contacts[k] = strips.mean_force(at.l[k], scheme, damping);
+                        found.contacts[k] = strips.mean_force(at.l[k].map(Meridian::from), scheme, damping);
                     }
                 }
                 found
@@ -395,23 +394,24 @@ fn link(sites: &BallSites, ball: usize, rings: &[GrooveBodies; 2]) -> Link {
     ];
     let mut reach = LinkRows::default();
     for (site, ring) in sites.iter().zip(rings) {
-        let of_side = |[radial, axial]: [f64; 2]| {
+        let of_side = |radial: f64, axial: f64| {
             let side = site.side;
             side.choose([radial, axial, 0.0, 0.0], [0.0, 0.0, radial, axial])
         };
         if let Some(elastic) = ring.elastic {
             let body = BodyId::Elastic(elastic);
-            terms.push(LinkTerm::new(body, 2 * site.ball, of_side([-1.0, 0.0])));
-            terms.push(LinkTerm::new(body, 2 * site.ball + 1, of_side([0.0, -1.0])));
+            terms.push(LinkTerm::new(body, 2 * site.ball, of_side(-1.0, 0.0)));
+            terms.push(LinkTerm::new(body, 2 * site.ball + 1, of_side(0.0, -1.0)));
         }
         if let Some(carrier) = ring.carrier {
             let rows = site.carrier_rows().into_iter().enumerate();
-            terms.extend(
-                rows.map(|(dof, row)| LinkTerm::new(BodyId::Lumped(carrier), dof, of_side(row.map(|r| -r)))),
-            );
+            terms.extend(rows.map(|(dof, row)| {
+                LinkTerm::new(BodyId::Lumped(carrier), dof, of_side(-row.radial, -row.axial))
+            }));
         }
         let held = ring.held.get(site.ball).copied().unwrap_or_default();
-        let first = of_side([site.reach[0] - held[0], site.reach[1] - held[1]]);
+        let first = site.reach - held;
+        let first = of_side(first.radial, first.axial);
         reach.iter_mut().zip(first).for_each(|(sum, r)| *sum += r);
     }
     let finite = rings[Side::Inner.index()].tilting.map(|carrier| CarriedCircle {
@@ -452,18 +452,21 @@ impl Interaction for RacewayContacts {
             }
             None => {
                 for (states, growth) in self.ball_states(lengths.end) {
-                    forces.extend(states.iter().flat_map(SiteState::on_ring));
-                    let gaps = states.map(|state| state.gap_slope());
+                    forces.extend(states.iter().flat_map(|state| state.on_ring().to_array()));
+                    let gaps = states.map(|state| state.gap_slope().to_array());
                     let across = |k: usize| {
                         let row = states[k].normal.map(|n| growth[k][1 - k] * n);
-                        row.map(|r| gaps[1 - k].map(|gap| r * gap))
+                        row.to_array().map(|r| gaps[1 - k].map(|gap| r * gap))
                     };
                     let own = states.map(|state| state.tangent());
                     tangents.extend(tangent_of_ball(own, [across(0), across(1)]));
                 }
             }
         }
-        for (force, dead) in forces.iter_mut().zip(self.dead.as_flattened()) {
+        for (force, dead) in forces
+            .iter_mut()
+            .zip(self.dead.iter().flat_map(|dead| dead.to_array()))
+        {
             *force += dead;
         }
         LinkForces { forces, tangents }
@@ -472,7 +475,7 @@ impl Interaction for RacewayContacts {
     fn round_off(&self, lengths: Lengths) -> f64 {
         let of_site = |(site, state): (&Site, SiteState)| {
             // The vector between the centres is a sum of terms of the size of these two.
-            let place = 2.0 * f64::EPSILON * (state.length + site.reach[0].hypot(site.reach[1]));
+            let place = 2.0 * f64::EPSILON * (state.length + site.reach.norm());
             // A contact that has no stiffness yet has the force of an approach that cannot be told from zero.
             (place * state.force.tangent).max(site.law.evaluate(place).force)
         };

@@ -1,5 +1,6 @@
 //! A mode: its frequency, how well it is known, and its shape.
 
+use contact::{BySide, Meridian};
 use ring::sparse::{SparseLoad, sparse_dot};
 use ring::vectors::dot;
 use ring::{VibratingRing, VibratingRings};
@@ -26,7 +27,7 @@ pub struct Mode {
     /// Shares of the kinetic energy: inner ring, outer ring, balls, shaft.
     pub kinetic: [f64; 4],
     /// Shares of the bodies to which the rings are tied, inner first, held by the shares of the rings; 0 without one.
-    pub kinetic_bodies: [f64; 2],
+    pub kinetic_bodies: BySide<f64>,
     /// Displacements, scaled so that the largest is 1.
     pub shape: Shape,
 }
@@ -40,8 +41,8 @@ pub struct Shape {
     pub rings: [Option<Vec<f64>>; 2],
     /// The same of the elastic bodies to which they are tied, inner first, that of several rings with its first seat.
     pub bodies: [Option<Vec<f64>>; 2],
-    /// Balls [radial, axial]; empty for a ring alone.
-    pub balls: Vec<[f64; 2]>,
+    /// Balls; empty for a ring alone.
+    pub balls: Vec<Meridian>,
     /// Shaft x, y, z, tilt x, tilt y.
     pub shaft: [f64; 5],
 }
@@ -95,7 +96,7 @@ pub(super) struct Kinetic {
     /// Inner ring, outer ring, balls, shaft.
     pub parts: [f64; 4],
     /// Of the bodies to which its rings are tied, which the parts of the rings hold.
-    pub bodies: [f64; 2],
+    pub bodies: BySide<f64>,
 }
 
 impl BearingDofs {
@@ -195,7 +196,7 @@ impl Shape {
         }
         let ball = |b: usize| {
             let first = dofs.first_ball + 2 * b;
-            [small[first], small[first + 1]]
+            Meridian::new(small[first], small[first + 1])
         };
         Shape {
             rings: rings.map(|place| place.map(|(group, ring)| ring.displacement(system.part(x, group)))),
@@ -214,7 +215,8 @@ impl Shape {
         let tilts = [tilt_arm * tilt_x, tilt_arm * tilt_y];
         let fields = self.rings.iter().chain(self.bodies.iter().rev()).flatten();
         let nodes = fields.flat_map(|u| u.chunks_exact(3));
-        let balls = self.balls.iter().map(|b| b.as_slice());
+        let balls = Meridian::flat(&self.balls);
+        let balls = balls.chunks_exact(2);
         let shaft = [[x, y, z].to_vec(), tilts.to_vec()];
         let points = || {
             let shaft = shaft.iter().map(Vec::as_slice);
@@ -230,11 +232,10 @@ impl Shape {
 
     pub(super) fn scale(&mut self, factor: f64) {
         let rings = self.rings.iter_mut().chain(&mut self.bodies);
-        let values = rings
-            .flatten()
-            .flatten()
-            .chain(self.balls.iter_mut().flatten())
-            .chain(&mut self.shaft);
+        let values = rings.flatten().flatten().chain(&mut self.shaft);
         values.for_each(|x| *x *= factor);
+        for ball in &mut self.balls {
+            *ball = ball.map(|x| x * factor);
+        }
     }
 }

@@ -109,7 +109,7 @@ impl Motion<'_> {
         shaft: RingStep,
     ) -> LandStep {
         let ring = RingStep {
-            spin: self.ring_speeds(land.side, span),
+            spin: self.turning_step(land.side, span).spin,
             ..land.side.choose(shaft, RingStep::default())
         };
         let h = land.width * (end as f64 - 0.5);
@@ -129,7 +129,7 @@ impl Motion<'_> {
     /// height that moved would change the stored energy.
     fn cage_height(&self) -> f64 {
         let geometry = &self.model.geometry;
-        geometry.ball_centre()[1] - geometry.groove_centre(Side::Inner)[1]
+        geometry.ball_centre().axial - geometry.groove_centre(Side::Inner).axial
     }
 
     /// New state and works of the cage.

@@ -1,6 +1,6 @@
 //! The new state of a part of a step, its energies and its ledger.
 
-use contact::Side;
+use contact::{BySide, Meridian, Side};
 use ring::{ElasticStep, Ended, RingState, StepScheme, Works};
 
 use super::ledger::Ledger;
@@ -28,7 +28,7 @@ impl Motion<'_> {
             .settings
             .ladder
             .tolerance
-            .map(|_| vec![[0.0; 2]; 3 * parts.n_balls()]);
+            .map(|_| vec![Meridian::default(); 3 * parts.n_balls()]);
         let energies = ends
             .each_ref()
             .map(|end| end.as_ref().map_or([0.0; 2], |end| end.energies));
@@ -40,7 +40,7 @@ impl Motion<'_> {
                     let mean = mean_acceleration(&*step, [old, &end.state], dt);
                     let first = parts.n_balls() + i;
                     for (ball, a) in mean.chunks_exact(2 * self.feet_per_contact()).enumerate() {
-                        trend[first + 2 * ball] = [a[0], a[1]];
+                        trend[first + 2 * ball] = Meridian::new(a[0], a[1]);
                     }
                 }
                 self.note_courses(
@@ -61,13 +61,14 @@ impl Motion<'_> {
         self.finish_free(&mut next, parts, solution);
         finish_seat(&mut next, parts, solution, step);
         finish_contacts(&mut next, parts, solution);
-        self.note_energies(&mut next, energies);
+        let [kinetic, strain] = [0, 1].map(|i| energies.map(|of_ring| of_ring[i]));
+        self.note_energies(&mut next, kinetic, strain);
         next.ledger.note_scale();
         let Some(mut trend) = trend else {
             return (next, 0.0);
         };
         for (b, mean) in trend.iter_mut().take(parts.n_balls()).enumerate() {
-            *mean = [0, 1].map(|i| (next.ball_velocities[b][i] - state.ball_velocities[b][i]) / dt);
+            *mean = (next.ball_velocities[b] - state.ball_velocities[b]).map(|change| change / dt);
         }
         let error = local_error(&trend, &state.trend, dt, &next.approaches);
         next.trend = trend;
@@ -119,18 +120,20 @@ impl Motion<'_> {
             _ => [0.0; 2],
         };
         let energies = self.model.backend.on_sides(energies);
-        self.note_energies(state, energies);
+        let [kinetic, strain] = [0, 1].map(|i| energies.map(|of_ring| of_ring[i]));
+        self.note_energies(state, kinetic, strain);
     }
 
     /// Kinetic and strain energies of a state, of which those of the rings are known.
-    fn note_energies(&self, state: &mut MotionState, [inner, outer]: [[f64; 2]; 2]) {
+    fn note_energies(&self, state: &mut MotionState, kinetic: BySide<f64>, strain: BySide<f64>) {
+        let [inner, outer] = kinetic;
         let kinetic = |mass: f64, v: &f64| 0.5 * mass * v * v;
         let mass = self.model.ball_mass();
         let balls: f64 = state
             .ball_velocities
             .iter()
-            .flatten()
-            .map(|v| kinetic(mass, v))
+            .flat_map(|v| v.to_array())
+            .map(|v| kinetic(mass, &v))
             .sum();
         let balls = match &state.free {
             Some(free) => free.kinetic(self.model.ball_inertia()),
@@ -140,11 +143,11 @@ impl Motion<'_> {
         let shaft: f64 = shaft.map(|(mass, v)| kinetic(mass, v)).sum();
         let seat = state.seat.zip(self.model.seat());
         let outer_kinetic = match seat {
-            Some((seat, of)) => outer[0] + kinetic(of.mass, &seat[1]),
-            None => outer[0],
+            Some((seat, of)) => outer + kinetic(of.mass, &seat[1]),
+            None => outer,
         };
-        state.ledger.kinetic = [inner[0] + shaft, outer_kinetic, balls];
-        state.ledger.strain = [inner[1], outer[1]];
+        state.ledger.kinetic = [inner + shaft, outer_kinetic, balls];
+        state.ledger.strain = strain;
     }
 }
 
@@ -157,17 +160,14 @@ fn mean_acceleration(step: &dyn ElasticStep, [old, new]: [&RingState; 2], dt: f6
 
 /// Local error of the last part over the largest contact approach: dt^2/12 times the change of the mean
 /// accelerations, the leading term of average acceleration.
-fn local_error(new: &[[f64; 2]], old: &[[f64; 2]], dt: f64, approaches: &[f64]) -> f64 {
+fn local_error(new: &[Meridian], old: &[Meridian], dt: f64, approaches: &[f64]) -> f64 {
     let largest = |values: &mut dyn Iterator<Item = f64>| values.fold(0.0, |m: f64, x| m.max(x.abs()));
     // After a start from undeformed bodies there is no earlier acceleration: no estimate.
-    let change = |i: usize, c: usize| {
-        if old[i][c].is_nan() {
-            0.0
-        } else {
-            new[i][c] - old[i][c]
-        }
+    let change = |(new, old): (&Meridian, &Meridian)| {
+        let change = |x: f64| if x.is_nan() { 0.0 } else { x };
+        (*new - *old).map(change).to_array()
     };
-    let change = largest(&mut (0..new.len()).flat_map(|i| [change(i, 0), change(i, 1)]));
+    let change = largest(&mut new.iter().zip(old).flat_map(change));
     let scale = largest(&mut approaches.iter().copied());
     if scale > 0.0 {
         dt * dt / 12.0 * change / scale
@@ -220,7 +220,7 @@ fn finish_balls(next: &mut MotionState, parts: &BearingParts, solution: &StepSol
     for (b, (ball, end)) in parts.balls.iter().zip(&solution.balls).enumerate() {
         next.balls[b] = *end;
         [next.ball_velocities[b], next.ball_accelerations[b]] =
-            finish_body(ball, step, *end, &mut next.ledger);
+            finish_body(ball, step, end.to_array(), &mut next.ledger).map(Meridian::from);
     }
 }
 
@@ -243,12 +243,12 @@ fn finish_contacts(next: &mut MotionState, parts: &BearingParts, solution: &Step
         end += last.force.energy;
         next.approaches[index] = last.force.approach;
         next.angles[index] = last.angle;
-        next.forces[index] = solution.forces[index].force;
+        next.forces[index] = solution.forces[index].force.into();
         next.ledger.contact_loss += solution.forces[index].loss;
         next.ledger.numerical_loss += solution.forces[index].numerical_loss;
         if let Some(dead) = parts.contacts.dead.get(index) {
             // On the ring and, with the opposite sign, on the ball.
-            next.ledger.load_work -= dead[0] * (l1[0] - l0[0]) + dead[1] * (l1[1] - l0[1]);
+            next.ledger.load_work -= dead.dot(l1 - l0);
         }
     }
     next.ledger.patch_work += start - next.ledger.hertz;

@@ -4,7 +4,7 @@
 //! It may come from overflow, or to one rank alone in a message; a state that has one must never be the start of the
 //! next step.
 
-use contact::Side;
+use contact::{Meridian, Side};
 
 use super::free_state::FreeState;
 use super::state::MotionState;
@@ -15,7 +15,7 @@ pub(super) fn require_finite(state: &MotionState) -> Result<(), DynamicsError> {
     let ledger = &state.ledger;
     let of_balls = [&state.balls, &state.ball_velocities, &state.ball_accelerations];
     let of_contacts = [&state.angles, &state.approaches];
-    let balls = of_balls.into_iter().flat_map(|x| x.as_flattened()).sum::<f64>();
+    let balls = of_balls.into_iter().flat_map(|x| Meridian::flat(x)).sum::<f64>();
     let free = state.free.iter().map(FreeState::sum).sum::<f64>();
     let friction: f64 = ledger
         .friction
@@ -28,7 +28,8 @@ pub(super) fn require_finite(state: &MotionState) -> Result<(), DynamicsError> {
     let contacts = of_contacts
         .into_iter()
         .flatten()
-        .chain(state.forces.as_flattened())
+        .copied()
+        .chain(Meridian::flat(&state.forces))
         .sum::<f64>();
     let shaft = [state.shaft, state.shaft_velocity, state.shaft_acceleration];
     let [inner, outer] = Side::BOTH
@@ -65,10 +66,10 @@ mod tests {
 
     fn said(change: impl Fn(&mut MotionState)) -> String {
         let mut state = MotionState {
-            balls: vec![[1e-6; 2]; 3],
-            ball_velocities: vec![[0.1; 2]; 3],
-            ball_accelerations: vec![[10.0; 2]; 3],
-            forces: vec![[1e3; 2]; 6],
+            balls: vec![Meridian::new(1e-6, 1e-6); 3],
+            ball_velocities: vec![Meridian::new(0.1, 0.1); 3],
+            ball_accelerations: vec![Meridian::new(10.0, 10.0); 3],
+            forces: vec![Meridian::new(1e3, 1e3); 6],
             angles: vec![0.3; 6],
             approaches: vec![1e-6; 6],
             ..MotionState::default()
@@ -89,7 +90,9 @@ mod tests {
             ("the energy of the inner ring", |s| {
                 s.ledger.kinetic[0] = f64::INFINITY
             }),
-            ("the motion of the balls", |s| s.ball_velocities[2][1] = f64::NAN),
+            ("the motion of the balls", |s| {
+                s.ball_velocities[2].axial = f64::NAN
+            }),
             ("the motion of the shaft", |s| s.shaft[4] = f64::NEG_INFINITY),
             ("the contacts", |s| s.angles[5] = f64::NAN),
             ("the work of a step", |s| s.ledger.frame_work = f64::NAN),

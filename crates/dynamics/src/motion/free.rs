@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use contact::Side;
+use contact::{BySide, Meridian, Side};
 use ring::ElasticStep;
 
 use super::free_state::{ContactTraction, FreeState};
@@ -38,14 +38,14 @@ impl Motion<'_> {
     pub(super) fn free_start(&self, state: &MotionState, steady: Option<&SteadyBalls>) -> Option<FreeState> {
         self.model.traction()?;
         let mut free = FreeState::default();
-        let [radius, height] = self.model.geometry.ball_centre();
+        let centre = self.model.geometry.ball_centre();
         for (ball, displacement) in state.balls.iter().enumerate() {
             let (sin, cos) = self.model.geometry.azimuth(ball).sin_cos();
-            let out = radius + displacement[0];
+            let Meridian { radial: out, axial } = centre + *displacement;
             let angles = [state.angles[2 * ball], state.angles[2 * ball + 1]];
             let rolls = steady.and_then(|steady| steady.balls.get(ball));
             let [orbit, turning @ ..] = rolls.map_or_else(|| self.rolls(out, angles), SteadyRolling::rates);
-            free.places.push([out * cos, out * sin, height + displacement[1]]);
+            free.places.push([out * cos, out * sin, axial]);
             free.velocities.push([-orbit * out * sin, orbit * out * cos, 0.0]);
             free.turnings.push([
                 turning[0] * cos - turning[1] * sin,
@@ -66,7 +66,7 @@ impl Motion<'_> {
 
     /// Rolling without slip at the centres of both contacts, with spin shared half and half, of a ball at a distance
     /// from the axis, m, with contact angles, rad, on rings that turn as at the start.
-    fn rolls(&self, out: f64, angles: [f64; 2]) -> [f64; 4] {
+    fn rolls(&self, out: f64, angles: BySide<f64>) -> [f64; 4] {
         let lever = 0.5 * self.model.geometry.ball_diameter;
         let speeds = Side::BOTH.map(|side| self.settings.speeds.of(side).at(0.0));
         let normal = Side::BOTH.map(|side| {
@@ -183,15 +183,14 @@ impl Motion<'_> {
         let answer = step.answer();
         let courses = free.courses.iter().skip(side.index()).step_by(2);
         let contacts = answer.start.as_chunks().0.iter().zip(answer.seen.as_chunks().0);
-        let of_contact = |((start, seen), course): ((&[f64; FREE_PORTS], &[f64; 2]), &RingCourse)| RingStep {
+        let of_contact = contacts.zip(courses).map(|((start, seen), course)| RingStep {
             elastic: Some(ElasticPlace {
                 start: *start,
                 slope: course.expected_slope(*seen, span.dt),
             }),
-            spin: self.ring_speeds(side, span),
-            ..RingStep::default()
-        };
-        contacts.zip(courses).map(of_contact).collect()
+            ..self.turning_step(side, span)
+        });
+        of_contact.collect()
     }
 
     /// Goes on with the course of the contacts of free balls on a ring, whose motion is `end` at the end of a part.
@@ -227,16 +226,18 @@ impl Motion<'_> {
         RingStep {
             carrier,
             has_inertia: masses.map(|mass| mass > 0.0),
-            elastic: None,
-            spin: self.ring_speeds(side, span),
+            ..self.turning_step(side, span)
         }
     }
 
-    /// Speed of a ring, rad/s: mean over a part, and at its end.
-    pub(super) fn ring_speeds(&self, side: Side, span: PartSpan) -> [f64; 2] {
+    /// A ring that turns at its speed over a part, and does not move else.
+    pub(super) fn turning_step(&self, side: Side, span: PartSpan) -> RingStep {
         let speed = self.settings.speeds.of(side);
         let turned = speed.angle(span.at(1.0)) - speed.angle(span.start);
-        [turned / span.dt, speed.at(span.at(1.0))]
+        RingStep {
+            spin: [turned / span.dt, speed.at(span.at(1.0))],
+            ..RingStep::default()
+        }
     }
 
     fn contact_step(
@@ -249,12 +250,11 @@ impl Motion<'_> {
         let (ball, geometry) = (site.ball, &self.model.geometry);
         let groove = GrooveCircle {
             radius: geometry.centre_radius(site.side),
-            height: geometry.groove_centre(site.side)[1],
+            height: geometry.groove_centre(site.side).axial,
             lever: self.model.contact_lever(ball, state.approaches[index]),
         };
-        let [f_r, f_z] = state.forces[index];
         let least = EARTH * self.model.ball_mass();
-        let force = f_r.hypot(f_z).max(least);
+        let force = state.forces[index].norm().max(least);
         let ellipse = self.model.ellipse(site.side, force);
         let (sin, cos) = state.angles[index].sin_cos();
         let normal = [site.side.sign() * cos, site.side.sign() * sin];
@@ -369,28 +369,23 @@ impl Motion<'_> {
 
 /// What a contact of a free ball does over a step of `dt`, s.
 fn contact_traction(found: &FoundContact, dt: f64) -> ContactTraction {
-    let [w_t, w_q, spin] = found.slip.turning;
-    let [f_t, f_q, moment @ ..] = found.traction.action;
     ContactTraction {
-        slip: found.slip.centre,
-        turning: [w_t, w_q],
-        spin,
-        force: [f_t, f_q],
-        moment,
+        slip: found.slip,
+        action: found.traction.action,
         power: -found.work / dt,
         torque: found.torque,
     }
 }
 
 impl BearingParts {
-    /// Displacements [radial, axial] of free balls from the just-touching position, m.
-    pub(super) fn free_displacements(&self, model: &Model, ends: &[[f64; 6]]) -> Vec<[f64; 2]> {
-        let [radius, height] = model.geometry.ball_centre();
+    /// Displacements of free balls from the just-touching position, m.
+    pub(super) fn free_displacements(&self, model: &Model, ends: &[[f64; 6]]) -> Vec<Meridian> {
+        let centre = model.geometry.ball_centre();
         let balls = self.free.iter().flat_map(|free| &free.balls).zip(ends);
         balls
             .map(|(ball, x)| {
                 let [x, y, z] = ball.end(x);
-                [x.hypot(y) - radius, z - height]
+                Meridian::new(x.hypot(y), z) - centre
             })
             .collect()
     }

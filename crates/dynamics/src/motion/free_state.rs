@@ -1,5 +1,7 @@
 //! What evolves of free balls.
 
+use contact::Meridian;
+
 use super::cage_state::CageState;
 use super::ring_course::RingCourse;
 use crate::interactions::traction::Slip;
@@ -33,16 +35,11 @@ pub struct FreeState {
 /// Traction of a contact in a step. Slips are those that the force follows: at the end of the step, as a rule.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ContactTraction {
-    /// Slip of the ball on the ring along the rolling direction and across it, m/s.
-    pub slip: [f64; 2],
-    /// Relative turning about these directions, rad/s.
-    pub turning: [f64; 2],
-    /// Relative turning about the normal, from the ball's centre to the raceway, rad/s.
-    pub spin: f64,
-    /// Force on the ball along the rolling direction and across it, N.
-    pub force: [f64; 2],
-    /// Moment on the ball about the centre of the contact, about these directions and the normal, N m.
-    pub moment: [f64; 3],
+    /// Slip of the ball on the ring in the frame of the rolling direction, the one across it and the normal, which
+    /// points from the ball's centre to the raceway.
+    pub slip: Slip,
+    /// Forces on the ball along the first two of them, N, then moments about all three and the contact's centre, N m.
+    pub action: [f64; 5],
     /// Power lost over the step, W.
     pub power: f64,
     /// Torque on the ball about the ring's axis, N m.
@@ -53,11 +50,12 @@ impl ContactTraction {
     /// As a row of numbers, for files.
     pub fn to_row(self) -> [f64; 12] {
         let ContactTraction {
-            slip: [s_t, s_q],
-            turning: [w_t, w_q],
-            spin,
-            force: [f_t, f_q],
-            moment: [m_t, m_q, m_n],
+            slip:
+                Slip {
+                    centre: [s_t, s_q],
+                    turning: [w_t, w_q, spin],
+                },
+            action: [f_t, f_q, m_t, m_q, m_n],
             power,
             torque,
         } = self;
@@ -68,22 +66,13 @@ impl ContactTraction {
     pub fn from_row(row: [f64; 12]) -> ContactTraction {
         let [s_t, s_q, w_t, w_q, spin, f_t, f_q, m_t, m_q, m_n, power, torque] = row;
         ContactTraction {
-            slip: [s_t, s_q],
-            turning: [w_t, w_q],
-            spin,
-            force: [f_t, f_q],
-            moment: [m_t, m_q, m_n],
+            slip: Slip {
+                centre: [s_t, s_q],
+                turning: [w_t, w_q, spin],
+            },
+            action: [f_t, f_q, m_t, m_q, m_n],
             power,
             torque,
-        }
-    }
-
-    /// The slip that the force follows.
-    pub fn whole_slip(&self) -> Slip {
-        let [w_t, w_q] = self.turning;
-        Slip {
-            centre: self.slip,
-            turning: [w_t, w_q, self.spin],
         }
     }
 }
@@ -114,8 +103,8 @@ impl FreeState {
         (out, [self.orbit(ball), turning[0], turning[1], turning[2]])
     }
 
-    /// Velocity [radial, axial] of a ball, m/s.
-    pub fn meridian_velocity(&self, ball: usize) -> [f64; 2] {
+    /// Velocity of a ball in its meridian plane, m/s.
+    pub fn meridian_velocity(&self, ball: usize) -> Meridian {
         let ([x, y, _], [u, v, w]) = (self.places[ball], self.velocities[ball]);
         let radius = x.hypot(y);
         let radial = if radius > 0.0 {
@@ -123,7 +112,7 @@ impl FreeState {
         } else {
             0.0
         };
-        [radial, w]
+        Meridian::new(radial, w)
     }
 
     /// Sum of all its numbers: not finite if one is not.

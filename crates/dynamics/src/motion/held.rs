@@ -285,8 +285,8 @@ impl<'m> HeldPart<'m> {
 
 /// What is expected of a part before its first answer: the contact forces of the last step.
 fn as_before(state: &MotionState) -> StepSolution {
-    let forces = state.forces.iter().map(|&force| MeanForce {
-        force,
+    let forces = state.forces.iter().map(|force| MeanForce {
+        force: force.to_array(),
         ..MeanForce::default()
     });
     StepSolution {

@@ -50,7 +50,7 @@ impl Motion<'_> {
         let mut found = Vec::new();
         for (index, force) in state.forces.iter().enumerate().filter(|(i, _)| carries[*i]) {
             let (ball, side) = (index / 2, Side::BOTH[index % 2]);
-            let (hertz, force) = (&self.model.hertz[side.index()], force[0].hypot(force[1]));
+            let (hertz, force) = (&self.model.hertz[side.index()], force.norm());
             let axes = hertz.semi_axes(force);
             let bearing = self.strip_bearing(state, (ball, side), force);
             let peak = bearing.as_ref().map_or(1.0, |bearing| bearing.peak);

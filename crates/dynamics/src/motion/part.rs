@@ -1,6 +1,6 @@
 //! What a part of a step asks of loads, rings and shaft, and the bodies and contacts they make.
 
-use contact::Side;
+use contact::{Meridian, Side};
 use ring::{ElasticStep, Feet, PortForces, StepScheme};
 
 use super::cache::Ahead;
@@ -157,14 +157,13 @@ impl Motion<'_> {
     }
 
     fn ball(&self, state: &MotionState, ball: usize, loads: &Loads) -> FlatBody<2> {
+        let course = [&state.balls, &state.ball_velocities, &state.ball_accelerations];
+        let course = course.map(|of_balls| of_balls[ball].to_array());
+        let load = loads.balls[ball].to_array();
         let dofs = [0, 1].map(|i| Inertia {
             mass: self.model.ball_mass(),
-            start: [
-                state.balls[ball][i],
-                state.ball_velocities[ball][i],
-                state.ball_accelerations[ball][i],
-            ],
-            load: loads.balls[ball][i],
+            start: course.map(|at| at[i]),
+            load: load[i],
             load_slope: if i == 0 { loads.ball_slopes[ball] } else { 0.0 },
         });
         FlatBody::new(Name::Ball(ball), dofs, [None; 2])
@@ -216,7 +215,11 @@ impl Motion<'_> {
     /// Largest force that acts at the start of a part, N: of the contacts, on shaft, balls and rings.
     pub(super) fn force_scale(&self, state: &MotionState, loads: &Loads) -> f64 {
         let arm = self.model.geometry.centre_radius(Side::Inner);
-        let forces = state.forces.iter().chain(&loads.balls).flatten().copied();
+        let forces = state
+            .forces
+            .iter()
+            .chain(&loads.balls)
+            .flat_map(|force| force.to_array());
         let moments = loads.shaft[3..].iter().map(|m| m / arm);
         let rings = Side::BOTH.into_iter().flat_map(|side| {
             let load = loads.rings[side.index()].as_deref().unwrap_or_default();
@@ -263,7 +266,7 @@ impl BearingParts {
     pub(super) fn with_dead(&self, forces: &[MeanForce]) -> Vec<f64> {
         let of_site = |(site, force): (usize, &MeanForce)| {
             let dead = self.contacts.dead.get(site).copied().unwrap_or_default();
-            [force.force[0] + dead[0], force.force[1] + dead[1]]
+            (Meridian::from(force.force) + dead).to_array()
         };
         forces.iter().enumerate().flat_map(of_site).collect()
     }

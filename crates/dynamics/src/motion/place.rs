@@ -139,7 +139,8 @@ impl BearingParts {
         let start = self.contacts.means.map_or(0.0, |means| means.weight);
         let place = |(index, (site, force)): (usize, (&Site, &MeanForce))| {
             let [l0, l1] = solution.reach(index);
-            let l = [0, 1].map(|i| site.side.sign() * (start * l0[i] + (1.0 - start) * l1[i]));
+            let l = l0.map(|x| start * x) + l1.map(|x| (1.0 - start) * x);
+            let l = l.map(|x| site.side.sign() * x).to_array();
             PatchPlace {
                 angle: l[1].atan2(l[0]),
                 force: force.force[0].hypot(force.force[1]),

@@ -2,15 +2,13 @@
 
 use body::BodyLoad;
 use contact::patch_shape::PatchShape;
-use contact::{LoadedPatch, Side};
+use contact::{LoadedPatch, Meridian, Side};
 
 use super::free_state::FreeState;
 use super::place::Course;
 use super::run::Motion;
 use super::state::MotionState;
-use crate::balls::{
-    BallDisplacement, BallResult, CageResult, ContactResult, FreeBallResult, Friction, TractionResult,
-};
+use crate::balls::{BallResult, CageResult, ContactResult, FreeBallResult, Friction, TractionResult};
 use crate::effects::Now;
 use crate::error::DynamicsError;
 use crate::footprint::on_groove;
@@ -23,7 +21,7 @@ impl Motion<'_> {
     pub fn balls(&self, state: &MotionState) -> Vec<BallResult> {
         let contact = |ball: usize, side: Side| {
             let index = 2 * ball + side.index();
-            let force = state.forces[index][0].hypot(state.forces[index][1]);
+            let force = state.forces[index].norm();
             let hertz = &self.model.hertz[side.index()];
             let semi_axes = hertz.semi_axes(force);
             let bearing = self.strip_bearing(state, (ball, side), force);
@@ -44,10 +42,7 @@ impl Motion<'_> {
                 azimuth_rad: self.azimuth_now(state, b).rem_euclid(turn),
                 inner,
                 outer,
-                displacement_m: BallDisplacement {
-                    radial: state.balls[b][0],
-                    axial: state.balls[b][1],
-                },
+                displacement_m: state.balls[b],
                 free: state.free.as_ref().map(|free| self.free_result(state, free, b)),
             }
         };
@@ -58,19 +53,19 @@ impl Motion<'_> {
     fn free_result(&self, state: &MotionState, free: &FreeState, ball: usize) -> FreeBallResult {
         let contact = |side: Side| {
             let index = 2 * ball + side.index();
-            let (of, force) = (&free.contacts[index], &state.forces[index]);
-            let force = force[0].hypot(force[1]);
+            let (of, force) = (&free.contacts[index], state.forces[index].norm());
+            let [f_t, f_q, moment @ ..] = of.action;
             let ellipse = self.model.ellipse(side, force);
             let bearing = self.strip_bearing(state, (ball, side), force);
             let lines = bearing.map(|bearing| bearing.lines).unwrap_or_default();
             TractionResult {
-                slip_m_per_s: of.slip,
-                spin_rad_per_s: of.spin,
-                traction_n: of.force,
-                traction_moment_n_m: of.moment,
+                slip_m_per_s: of.slip.centre,
+                spin_rad_per_s: of.slip.turning[2],
+                traction_n: [f_t, f_q],
+                traction_moment_n_m: moment,
                 slope_force_n: free.track.get(index).map(|track| track[0]),
                 slope_moment_n_m: free.track.get(index).map(|[_, moment @ ..]| *moment),
-                pv_w_per_m2: largest_pv(&ellipse, &lines, &of.whole_slip()),
+                pv_w_per_m2: largest_pv(&ellipse, &lines, &of.slip),
                 friction_power_w: of.power,
             }
         };
@@ -151,7 +146,7 @@ impl Motion<'_> {
         let (time, hertz) = (self.time(state.step), &self.model.hertz[side.index()]);
         let patch = |ball: usize| {
             let index = 2 * ball + side.index();
-            let force = state.forces[index][0].hypot(state.forces[index][1]);
+            let force = state.forces[index].norm();
             let azimuth = self.azimuth_now(state, ball) - self.frame_angle(side, time);
             let place = state.places[0][index];
             let least = self.model.contact.least_patch;
@@ -238,7 +233,7 @@ impl Motion<'_> {
         Some(moving.body.momentum(state.rings[side.index()].as_ref()?))
     }
 
-    /// Mean motion [radial, axial] of the groove centre under a ball over a step of one part, m, measured by the
+    /// Mean motion of the groove centre under a ball over a step of one part, m, measured by the
     /// patch of that step; zero on a rigid ring.
     pub fn groove_motion(
         &self,
@@ -246,7 +241,7 @@ impl Motion<'_> {
         to: &MotionState,
         ball: usize,
         side: Side,
-    ) -> Result<[f64; 2], DynamicsError> {
+    ) -> Result<Meridian, DynamicsError> {
         let share = 1.0 - self.settings.integrator.alpha_f;
         let time = self.time(from.step) + share * self.settings.dt;
         let course = Course {
@@ -261,11 +256,13 @@ impl Motion<'_> {
         let feet = self.place(&to.places[0], &course)?.feet;
         let i = side.index();
         let (Some(moving), Some(old), Some(new)) = (&self.rings[i], &from.rings[i], &to.rings[i]) else {
-            return Ok([0.0; 2]);
+            return Ok(Meridian::default());
         };
-        let measure = |ring: &RingState| feet[i][ball].measure(&moving.body.nodal(ring.displacement()));
-        let (a, b) = (measure(old), measure(new));
-        Ok([0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])])
+        let measure = |ring: &RingState| {
+            let field = moving.body.nodal(ring.displacement());
+            Meridian::from(feet[i][ball].measure(&field))
+        };
+        Ok((measure(old) + measure(new)).map(|sum| 0.5 * sum))
     }
 
     /// Inertia of a flexible ring as a rigid body about the centre of its groove circle; None for a rigid one.

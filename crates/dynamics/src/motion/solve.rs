@@ -3,7 +3,7 @@
 //! Unknowns are the displacements at the end of the part. Residuals are forces: inertia and loads of balls and shaft at
 //! the weighted time, and for every flexible ring what it asks for at its ports.
 
-use contact::Side;
+use contact::{Meridian, Side};
 use timer::SharedLaps;
 
 use super::cage_state::CageSolution;
@@ -30,8 +30,8 @@ const HALVINGS: u32 = 10;
 pub struct StepSolution {
     /// Shaft at the end, m and rad.
     pub shaft: [f64; 5],
-    /// Balls at the end [radial, axial], m.
-    pub balls: Vec<[f64; 2]>,
+    /// Balls at the end, m.
+    pub balls: Vec<Meridian>,
     /// The seat of the outer ring along z at the end, m; 0 unless it slides.
     pub seat: f64,
     /// l of every contact at start and end, `[2 n_sites]`, m.
@@ -58,8 +58,8 @@ pub struct StepSolution {
 
 impl StepSolution {
     /// l of a contact at the start and at the end of the part, m.
-    pub fn reach(&self, site: usize) -> [[f64; 2]; 2] {
-        lengths(&self.reaches).of(site)
+    pub fn reach(&self, site: usize) -> [Meridian; 2] {
+        lengths(&self.reaches).of(site).map(Meridian::from)
     }
 
     /// Contacts at the start, 0, or at the end, 1, of the part.
@@ -91,7 +91,7 @@ impl BearingParts {
         Ok(StepSolution {
             shaft: system.coordinates(SHAFT, x),
             balls: (0..self.balls.len())
-                .map(|ball| system.coordinates(FIRST_BALL + ball, x))
+                .map(|ball| system.coordinates(FIRST_BALL + ball, x).into())
                 .collect(),
             seat: self.seat_end(&system, x),
             forces,
@@ -135,7 +135,7 @@ pub(super) fn policy<'p>(scale: f64, scales: Option<&'p [f64]>, costs: &'p Share
 fn check_grooves(parts: &BearingParts, solution: &StepSolution) -> Result<(), DynamicsError> {
     for (index, site) in parts.contacts.sites.iter().enumerate() {
         let [_, end] = solution.reach(index);
-        if end[0].hypot(end[1]) > site.touching {
+        if end.norm() > site.touching {
             require_in_groove(site, site.angle(end))?;
         }
     }
@@ -160,13 +160,9 @@ pub(super) fn check_range(
             return left(format!("{} of the shaft", AXES[dof]), text(q), text(limit));
         }
     }
-    for (ball, [radial, axial]) in solution.balls.iter().enumerate() {
-        if radial.hypot(*axial) > diameter {
-            return left(
-                format!("ball {ball}"),
-                in_mm(radial.hypot(*axial)),
-                in_mm(diameter),
-            );
+    for (ball, moved) in solution.balls.iter().enumerate() {
+        if moved.norm() > diameter {
+            return left(format!("ball {ball}"), in_mm(moved.norm()), in_mm(diameter));
         }
     }
     check_grooves(parts, solution)
@@ -178,7 +174,7 @@ pub(super) fn check_patches(parts: &BearingParts, solution: &StepSolution) -> Re
     for ((site, force), state) in contacts.zip(solution.states(parts, 1)) {
         if state.force.beyond_limit {
             let (ball, side) = (site.ball, site.side.name());
-            let force = force.force[0].hypot(force.force[1]);
+            let force = Meridian::from(force.force).norm();
             return Err(DynamicsError::PatchTooSmall { ball, side, force });
         }
     }

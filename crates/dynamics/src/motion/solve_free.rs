@@ -131,7 +131,7 @@ impl BearingParts {
         }
         if self.cage().is_some() {
             let own = system.unknowns(BodyId::Lumped(self.cage_body()));
-            scales[own][3..].fill(1.0 / model.geometry.ball_centre()[0]);
+            scales[own][3..].fill(1.0 / model.geometry.ball_centre().radial);
         }
         scales
     }
@@ -181,7 +181,7 @@ impl BearingParts {
         let ends: Vec<[f64; 6]> = (0..self.n_balls())
             .map(|ball| system.coordinates(FIRST_BALL + ball, x))
             .collect();
-        let reach = |i: usize| found.iter().flat_map(|found| found.reach[i]).collect();
+        let reach = |i: usize| found.iter().flat_map(|found| found.reach[i].to_array()).collect();
         StepSolution {
             shaft: system.coordinates(SHAFT, x),
             balls: self.free_displacements(model, &ends),

@@ -1,7 +1,7 @@
 //! The start of a motion: static equilibrium, at rest but for the turning of the rings.
 
 use body::BesideRing;
-use contact::Side;
+use contact::{Meridian, Side};
 use ring::{ElasticBody, Integrator, RingState};
 
 use super::cache::StepCache;
@@ -44,13 +44,13 @@ impl Motion<'_> {
             rung: 0,
             rings: Side::BOTH.map(ring),
             balls: solution.displacements.balls.clone(),
-            ball_velocities: vec![[0.0; 2]; model.geometry.n_balls],
-            ball_accelerations: vec![[0.0; 2]; model.geometry.n_balls],
+            ball_velocities: vec![Meridian::default(); model.geometry.n_balls],
+            ball_accelerations: vec![Meridian::default(); model.geometry.n_balls],
             shaft: q,
             shaft_velocity: velocity,
             shaft_acceleration: [0.0; 5],
             seat: model.seat().map(|_| [solution.displacements.seat, 0.0, 0.0]),
-            trend: vec![[0.0; 2]; 3 * model.geometry.n_balls],
+            trend: vec![Meridian::default(); 3 * model.geometry.n_balls],
             forces: on_rings(&contacts),
             places: [(); 3].map(|()| places.clone()),
             angles: contacts.iter().map(|c| c.angle).collect(),
@@ -95,16 +95,16 @@ impl Motion<'_> {
             step: 0,
             rung: 0,
             rings: Side::BOTH.map(ring),
-            balls: vec![[0.0; 2]; n],
-            ball_velocities: vec![[0.0; 2]; n],
-            ball_accelerations: vec![[0.0; 2]; n],
+            balls: vec![Meridian::default(); n],
+            ball_velocities: vec![Meridian::default(); n],
+            ball_accelerations: vec![Meridian::default(); n],
             shaft: q,
             shaft_velocity: velocity,
             shaft_acceleration: [0.0; 5],
             seat: self.model.seat().map(|_| [0.0; 3]),
             // Nothing is known of the accelerations.
-            trend: vec![[f64::NAN; 2]; 3 * n],
-            forces: vec![[0.0; 2]; 2 * n],
+            trend: vec![Meridian::new(f64::NAN, f64::NAN); 3 * n],
+            forces: vec![Meridian::default(); 2 * n],
             places: [(); 3].map(|()| vec![unloaded; 2 * n]),
             angles: vec![self.model.geometry.free_contact_angle(); 2 * n],
             approaches: vec![0.0; 2 * n],
@@ -140,7 +140,8 @@ impl Motion<'_> {
             }
         }
         for (b, moved) in next.ball_velocities.iter().enumerate() {
-            state.ball_accelerations[b] = [0, 1].map(|i| mean(moved[i], state.ball_velocities[b][i]));
+            state.ball_accelerations[b] =
+                (*moved - state.ball_velocities[b]).map(|change| change / self.settings.dt);
         }
         if let (Some(seat), Some(moved), Some(model)) = (&mut state.seat, next.seat, self.model.seat())
             && model.mass > 0.0
@@ -180,7 +181,11 @@ impl Motion<'_> {
         };
         let contacts = RacewayContacts::new((0..n_contacts).map(site).collect(), Vec::new(), None);
         let reach = |site: &Site| site.reach_of_rigid(state.shaft, state.balls[site.ball]);
-        let lengths: Vec<f64> = contacts.sites.iter().flat_map(reach).collect();
+        let lengths: Vec<f64> = contacts
+            .sites
+            .iter()
+            .flat_map(|site| reach(site).to_array())
+            .collect();
         for (index, contact) in contacts.states(&lengths).into_iter().enumerate() {
             state.approaches[index] = contact.force.approach;
             state.angles[index] = contact.angle;

@@ -1,11 +1,13 @@
 //! Choices of a motion, all that evolves in it, and what a step reports.
 
+use contact::Meridian;
+
 use super::free_state::FreeState;
 use super::ledger::Ledger;
 use crate::interactions::contact_damping::ContactDamping;
 use crate::interactions::discrete_gradient::ContactScheme;
 use crate::interactions::raceway_contact::SiteState;
-use crate::kinematics::RingSpeeds;
+use crate::kinematics::{RingSpeeds, SlipRatios};
 use ring::Integrator;
 use ring::RingState;
 use timer::Laps;
@@ -24,7 +26,7 @@ pub struct MotionSettings {
     /// Speeds of the rings.
     pub speeds: RingSpeeds,
     /// Slip ratios at the inner and outer raceway.
-    pub slip: [f64; 2],
+    pub slip: SlipRatios,
     /// Contact damping, when the scene calls for it.
     pub contact_damping: Option<ContactDamping>,
     /// Rayleigh damping: factors of M and of K in C, 1/s and s.
@@ -65,12 +67,12 @@ pub struct MotionState {
     pub rung: u64,
     /// The flexible rings.
     pub rings: [Option<RingState>; 2],
-    /// Ball displacements from the just-touching position [radial, axial], m.
-    pub balls: Vec<[f64; 2]>,
+    /// Ball displacements from the just-touching position, m.
+    pub balls: Vec<Meridian>,
     /// Ball velocities, m/s.
-    pub ball_velocities: Vec<[f64; 2]>,
+    pub ball_velocities: Vec<Meridian>,
     /// Ball accelerations, m/s^2.
-    pub ball_accelerations: Vec<[f64; 2]>,
+    pub ball_accelerations: Vec<Meridian>,
     /// Displacement of the shaft in space, m and rad.
     pub shaft: [f64; 5],
     /// Its velocity; the mean over the last step for dofs without mass of their own.
@@ -79,12 +81,12 @@ pub struct MotionState {
     pub shaft_acceleration: [f64; 5],
     /// The seat of the outer ring along z, if it slides: displacement, velocity, acceleration, m, m/s, m/s^2.
     pub seat: Option<[f64; 3]>,
-    /// Mean accelerations [radial, axial] over the last part of a step, of the balls, then of the groove centres by
+    /// Mean accelerations over the last part of a step, of the balls, then of the groove centres by
     /// site, m/s^2: what the local error is estimated from. Zero when steps do not adapt, NaN where nothing is known
     /// yet.
-    pub trend: Vec<[f64; 2]>,
-    /// Mean contact forces of the last step [radial, axial] on the rings, by site, N.
-    pub forces: Vec<[f64; 2]>,
+    pub trend: Vec<Meridian>,
+    /// Mean contact forces of the last step on the rings, by site, N.
+    pub forces: Vec<Meridian>,
     /// Contact angles at the end of the last step, by site, rad.
     pub angles: Vec<f64>,
     /// Hertz approaches at the end of the last step, by site, m; negative is a gap.
@@ -113,16 +115,6 @@ impl PatchPlace {
             angle: contact.angle,
             force: contact.force.force,
         }
-    }
-
-    /// All of it in a row.
-    pub fn to_row(&self) -> [f64; 2] {
-        [self.angle, self.force]
-    }
-
-    /// The place of a row.
-    pub fn from_row([angle, force]: [f64; 2]) -> PatchPlace {
-        PatchPlace { angle, force }
     }
 }
 

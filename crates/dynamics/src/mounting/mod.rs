@@ -103,7 +103,7 @@ impl Mounting {
                 bearing.geometry,
                 [0.0; 2],
                 0.0,
-                cold.each_ref().map(|seat| seat.groove[0]),
+                cold.each_ref().map(|seat| seat.groove.radial),
             ),
             operating: warmed.clearance(end, last),
         };
@@ -137,14 +137,14 @@ impl Mounting {
         Cow::Owned(Mounting::from(warmed.grown(time, &seats)))
     }
 
-    /// Motion of the groove centre of a ring by mounting [radial, axial], m, measured by the weights of a contact.
+    /// Motion of the groove centre of a ring by mounting, m, measured by the weights of a contact.
     pub fn groove_motion(&self, side: Side, weights: Option<&NodalWeights>) -> Meridian {
         let ring = &self.rings[side.index()];
-        let [radial, axial] = match (&ring.field, weights) {
-            (Some(field), Some(weights)) => weights.measure(field),
+        let moved = match (&ring.field, weights) {
+            (Some(field), Some(weights)) => weights.measure(field).into(),
             _ => ring.groove,
         };
-        [ring.centre_growth + radial, axial]
+        Meridian::new(ring.centre_growth + moved.radial, moved.axial)
     }
 
     /// Growth of the distance from groove centre to the centre of a touching ball, m.

@@ -163,14 +163,11 @@ impl RingSeat {
     pub fn mounted(&self, strain: SeatStrain) -> Result<MountedSeat, DynamicsError> {
         let mut mounted = self.equilibrium(strain)?;
         let groove = match &self.answer {
-            SeatAnswer::Rigid => [mounted.pressure * self.tube.growth(), 0.0],
-            _ => [0, 1].map(|c| {
-                mounted
-                    .parts
-                    .iter()
-                    .map(|(field, size)| size * field.groove[c])
-                    .sum()
-            }),
+            SeatAnswer::Rigid => Meridian::new(mounted.pressure * self.tube.growth(), 0.0),
+            _ => Meridian::from([0, 1].map(|c| {
+                let parts = mounted.parts.iter();
+                parts.map(|(field, size)| size * field.groove[c]).sum()
+            })),
         };
         self.check_stress(mounted.pressure)?;
         self.check_waves(mounted.pressure)?;
@@ -182,7 +179,7 @@ impl RingSeat {
         let report = self.fit.as_ref().map(|_| SeatReport {
             interference: 2.0 * self.interference(strain),
             pressure: mounted.pressure,
-            groove_growth: groove[0],
+            groove_growth: groove.radial,
             loosening_speed: self.loosening_speed(strain),
         });
         if let Some(report) = &report {

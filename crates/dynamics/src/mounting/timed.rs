@@ -135,7 +135,7 @@ impl Warmed {
     /// Radial clearance at a time, s, with its seats.
     pub fn clearance(&self, time: f64, seats: &BySide<MountedSeat>) -> Clearance {
         let (strains, common) = self.relative(time);
-        let grooves = seats.each_ref().map(|seat| seat.groove[0]);
+        let grooves = seats.each_ref().map(|seat| seat.groove.radial);
         Clearance::new(&self.geometry, strains.rings, strains.balls, grooves).scaled(1.0 + common)
     }
 

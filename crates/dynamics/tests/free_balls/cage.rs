@@ -315,7 +315,7 @@ fn drifting(pocket_clearance: Option<f64>) -> (Vec<f64>, f64, f64) {
     let (dt, n) = (2e-5, 1100);
     let motion = Motion::new(&model, with_ladder(dt, &speeds)).unwrap();
     let start = motion.start(&solution);
-    let radius = model.geometry.ball_centre()[0];
+    let radius = model.geometry.ball_centre().radial;
     let mut turned = [0.0; 18];
     let mut before: Vec<f64> = (0..18)
         .map(|ball| start.free.as_ref().unwrap().azimuth(ball))

@@ -57,7 +57,7 @@ fn thrown(mu: f64, dt: f64, duration: f64) -> Thrown {
     let deep = out - centre - touching;
     for ball in 0..n {
         state.approaches[2 * ball + 1] = deep;
-        state.forces[2 * ball + 1] = [mass * v0 * v0 / out, 0.0];
+        state.forces[2 * ball + 1] = [mass * v0 * v0 / out, 0.0].into();
         state.angles[2 * ball + 1] = 0.0;
     }
     state.ledger.hertz = n as f64 * 0.4 * law * deep.powf(2.5);
@@ -183,7 +183,7 @@ fn driven(a: f64, mu: f64) -> Driven {
     let mean = |site: usize| {
         let forces = course[half..]
             .iter()
-            .map(|s| s.free.as_ref().unwrap().contacts[site].force[0]);
+            .map(|s| s.free.as_ref().unwrap().contacts[site].action[0]);
         forces.sum::<f64>() / (n - half) as f64
     };
     Driven {

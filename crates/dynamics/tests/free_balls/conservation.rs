@@ -115,7 +115,7 @@ fn the_steady_state_of_a_motion_is_of_second_order_in_the_step() {
         let last = run(&motion, motion.start(&solution), n, |_| {});
         let free = last.free.as_ref().unwrap();
         [
-            relative(free.contacts[1].spin, expected.outer.spin_rad_per_s),
+            relative(free.contacts[1].slip.turning[2], expected.outer.spin_rad_per_s),
             relative(free.orbit(0), expected.orbit_rad_per_s),
         ]
     });
@@ -163,11 +163,11 @@ fn under_a_falling_preload_the_whole_bearing_breaks_away_where_its_grip_ends() {
         let [x, y, _] = free.places[0];
         let velocity = free.orbit(0) * x.hypot(y);
         course.push(Skid {
-            grip: 2.0 * mu * state.forces[0][0].hypot(state.forces[0][1]),
+            grip: 2.0 * mu * state.forces[0].norm(),
             drag: unit * pressure * velocity * velocity,
             velocity,
-            traction: free.contacts[0].force,
-            outer: free.contacts[1].force[0],
+            traction: [free.contacts[0].action[0], free.contacts[0].action[1]],
+            outer: free.contacts[1].action[0],
         });
         assert!(state.ledger.relative_defect().abs() < 1e-9);
     });
@@ -242,11 +242,11 @@ fn a_shaft_that_runs_into_its_balls_shares_its_momentum_with_them() {
             worst = worst.max((now - first).abs());
         }
         for (site, contact) in state.free.as_ref().unwrap().contacts.iter().enumerate() {
-            let force = state.forces[site][0].hypot(state.forces[site][1]);
+            let force = state.forces[site].norm();
             match site % 2 {
                 0 => {
                     touched = touched.max(force);
-                    rubbed = rubbed.max(contact.force[0].abs());
+                    rubbed = rubbed.max(contact.action[0].abs());
                 }
                 _ => outer = outer.max(force),
             }

@@ -61,7 +61,7 @@ fn without_curvature_the_contact_with_the_larger_moment_of_spin_controls() {
         }
     });
     let flat = SteadyBall {
-        out: model.geometry.ball_centre()[0] + ball.displacement_m.radial,
+        out: model.geometry.ball_centre().radial + ball.displacement_m.radial,
         inertia: model.ball_inertia(),
         drag: 0.0,
         contacts,

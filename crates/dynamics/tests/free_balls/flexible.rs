@@ -109,8 +109,8 @@ fn on_stiff_flexible_rings_balls_move_as_on_rigid_ones() {
             "{} {} {} {}",
             p.orbit(ball),
             q.orbit(ball),
-            p.contacts[2 * ball].force[0],
-            q.contacts[2 * ball].force[0]
+            p.contacts[2 * ball].action[0],
+            q.contacts[2 * ball].action[0]
         );
         assert!(relative(p.orbit(ball), q.orbit(ball)) < 1e-4);
     }

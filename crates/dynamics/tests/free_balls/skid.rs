@@ -31,7 +31,7 @@ fn held(axial: f64, share: f64, steps: usize) -> Held {
         let [u, v, w] = state.free.as_ref().unwrap().velocities[0];
         (u * u + v * v + w * w).sqrt()
     };
-    let grip = 2.0 * mu * free.forces[0][0].hypot(free.forces[0][1]);
+    let grip = 2.0 * mu * free.forces[0].norm();
     let unit = BallDrag { pressure: 1.0 }.coefficient(&model);
     let pressure = share * grip / (unit * size(&free).powi(2));
     model.effects.push(Box::new(BallDrag { pressure }));
@@ -44,7 +44,7 @@ fn held(axial: f64, share: f64, steps: usize) -> Held {
         if orbits.len() > steps - 100 {
             let drag = unit * pressure * size(state).powi(2);
             let contacts = &state.free.as_ref().unwrap().contacts;
-            (0..2).for_each(|i| tractions[i] += contacts[i].force[0] / (100.0 * drag));
+            (0..2).for_each(|i| tractions[i] += contacts[i].action[0] / (100.0 * drag));
         }
     });
     Held {
@@ -91,7 +91,7 @@ fn rolling() -> Rolling {
     let model = freed(thrust(2000.0), coulomb(mu, Creep::Elastic), &speeds);
     let ball = equilibrium(&model).balls[0];
     let orbit = ball.free.unwrap().orbit_rad_per_s;
-    let radius = model.geometry.ball_centre()[0] + ball.displacement_m.radial;
+    let radius = model.geometry.ball_centre().radial + ball.displacement_m.radial;
     Rolling {
         model,
         speeds: [orbit, orbit * radius],

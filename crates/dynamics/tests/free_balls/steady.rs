@@ -43,7 +43,7 @@ fn a_motion_stays_in_the_equilibrium_of_rolling_balls() {
         let spin = |index: usize| {
             let expected = solution.balls[5].free.as_ref().unwrap();
             let expected = [expected.inner, expected.outer][index].spin_rad_per_s;
-            (free.contacts[10 + index].spin - expected).abs() / rpm(speed)
+            (free.contacts[10 + index].slip.turning[2] - expected).abs() / rpm(speed)
         };
         let torque = relative(found.torque_n_m, friction.torque_n_m);
         // Nothing but the rings acts on balls that stay: what one ring loses is what the other has.

@@ -74,7 +74,7 @@ pub fn after(
 }
 
 fn force(state: &MotionState, site: usize) -> f64 {
-    state.forces[site][0].hypot(state.forces[site][1])
+    state.forces[site].norm()
 }
 
 /// Wrong: a ball would roll over a spall and gain or lose energy that nothing explains. Ledger over entry, floor and
@@ -195,8 +195,8 @@ fn at_a_shoulder_balls_roll_steadily_with_the_traction_of_what_is_left() {
     let tau = groove * (shoulder - angle) / a;
     assert!((0.1..0.9).contains(&tau), "{tau}");
     let contact = &last.free.as_ref().unwrap().contacts[site];
-    let force = last.forces[site][0].hypot(last.forces[site][1]);
-    let moment = contact.moment[2] / (mu * force * a);
+    let force = last.forces[site].norm();
+    let moment = contact.action[4] / (mu * force * a);
     let radius = model.ellipse(Side::Outer, force).radius;
     // By a second way: 1000 strips of the load that is left, 41 places along each.
     let b = a * before.semi_axes_m[1] / before.semi_axes_m[0];
@@ -208,8 +208,9 @@ fn at_a_shoulder_balls_roll_steadily_with_the_traction_of_what_is_left() {
             let (sin, cos) = (i as f64 * std::f64::consts::PI / 42.0).sin_cos();
             let x = b / a * (1.0 - y * y).sqrt() * cos;
             let share = (1.0 - y * y) * sin * sin;
-            let along = contact.slip[0] - contact.spin * a * y + contact.turning[1] * z;
-            let across = contact.slip[1] + contact.spin * a * x - contact.turning[0] * z;
+            let ([u, v], [about_t, about_q, spin]) = (contact.slip.centre, contact.slip.turning);
+            let along = u - spin * a * y + about_q * z;
+            let across = v + spin * a * x - about_t * z;
             load += share;
             sum += share * (y * along - x * across) / along.hypot(across);
         }

@@ -46,8 +46,8 @@ fn under_thrust_tractions_are_opposite_and_tiny_and_torque_goes_with_friction() 
     let [weak, strong] = [0.03, 0.07].map(|mu| (mu, steady(2000.0, 1800.0, mu)));
     for (mu, found) in [&weak, &strong] {
         let free = found.state.free.as_ref().unwrap();
-        let [inner, outer] = [free.contacts[0].force[0], free.contacts[1].force[0]];
-        let load = found.state.forces[0][0].hypot(found.state.forces[0][1]);
+        let [inner, outer] = [free.contacts[0].action[0], free.contacts[1].action[0]];
+        let load = found.state.forces[0].norm();
         assert!(
             inner.abs() < 4e-3 * mu * load && inner.abs() > 1e-4 * mu * load,
             "{inner}"
@@ -82,12 +82,12 @@ fn the_orbit_is_that_of_rolling_at_the_balls_own_angles() {
 fn both_contacts_spin_under_thrust() {
     let found = steady(2000.0, 1800.0, 0.07);
     let contacts = &found.state.free.as_ref().unwrap().contacts;
-    let (inner, outer) = (contacts[0].spin, contacts[1].spin);
+    let (inner, outer) = (contacts[0].slip.turning[2], contacts[1].slip.turning[2]);
     println!("{inner} {outer} {}", found.torque);
     let share = inner / (inner + outer);
     assert!((0.3..0.7).contains(&share), "{share}");
     // 3/8 mu Q a E at the outer contact, which has the smaller of both, times all spin.
-    let load = found.state.forces[1][0].hypot(found.state.forces[1][1]);
+    let load = found.state.forces[1].norm();
     let [a, b] = found.model.hertz[1].semi_axes(load);
     let (_, e) = contact::elliptic::complete_elliptic(1.0 - (b / a).powi(2));
     let moment = 0.375 * 0.07 * load * a * e;
@@ -112,7 +112,7 @@ fn lateral_tractions_carry_the_gyroscopic_moment() {
     let ([x, y, _], w) = (free.places[0], free.turnings[0]);
     let across = (w[0] * x + w[1] * y) / x.hypot(y);
     let needed = 0.4 * mass * r * r * free.orbit(0) * across;
-    let carried = -r * (free.contacts[0].force[1] + free.contacts[1].force[1]);
+    let carried = -r * (free.contacts[0].action[1] + free.contacts[1].action[1]);
     println!("{carried} {needed}");
     assert!((carried / needed - 1.0).abs() < 5e-3, "{carried} {needed}");
     assert!((needed.abs() / 0.0138 - 1.0).abs() < 0.02, "{needed}");

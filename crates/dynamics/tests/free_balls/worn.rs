@@ -39,7 +39,7 @@ fn rolling(model: &Model) -> f64 {
 }
 
 fn force(state: &MotionState, site: usize) -> f64 {
-    state.forces[site][0].hypot(state.forces[site][1])
+    state.forces[site].norm()
 }
 
 /// Wrong: energy would be made or lost where a mark of a free ball rolls under a raceway. The ledger through passages

@@ -4,7 +4,7 @@
 use std::sync::Arc;
 
 use body::{SeatTie, Surrounding};
-use contact::Side;
+use contact::{Meridian, Side};
 use dynamics::effects::{FrameRotation, Gravity};
 use dynamics::kinematics::Speed;
 use dynamics::motion::{Motion, MotionSettings, MotionState, StepCache};
@@ -316,8 +316,7 @@ fn a_grown_shaft_stays() {
     let start = motion.start(&rest);
     let first = start.forces.clone();
     let state = every_fifth(&motion, start, 20).pop().unwrap();
-    let [now, first] =
-        [&state.forces, &first].map(|forces| forces.iter().flatten().copied().collect::<Vec<_>>());
+    let [now, first] = [&state.forces, &first].map(|forces| Meridian::flat(forces));
     let off = difference(&now, &first);
     println!("forces after 20 steps: {off:e}");
     assert!(off < 2e-2, "{off:e}");

@@ -52,7 +52,7 @@ pub fn histories_of(states: &[MotionState], side: Side) -> [Vec<f64>; 2] {
     let ring = states
         .iter()
         .flat_map(|s| s.forces.iter().skip(side.index()).step_by(2));
-    [shaft.collect(), ring.flatten().copied().collect()]
+    [shaft.collect(), ring.flat_map(|force| force.to_array()).collect()]
 }
 
 /// The same of the outer ring.

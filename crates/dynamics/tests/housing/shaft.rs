@@ -95,7 +95,7 @@ fn histories(states: &[MotionState]) -> [Vec<f64>; 3] {
     [
         shaft.collect(),
         tilts.collect(),
-        inner.flatten().copied().collect(),
+        inner.flat_map(|force| force.to_array()).collect(),
     ]
 }
 
@@ -230,7 +230,7 @@ fn a_soft_shaft_that_turns_flies_straight() {
         let mut largest = [0.0f64; 3];
         for step in 1..=(1e-3 / dt).round() as i32 {
             state = motion.step(&state, &mut cache).unwrap().0;
-            let force = state.forces.iter().flatten().fold(0.0f64, |m, f| m.max(f.abs()));
+            let force = state.forces.iter().fold(0.0f64, |m, f| m.max(f.norm()));
             assert!(force < 1e-6, "it touches a ball with {force:e} N");
             let off = |i: usize| state.shaft[i] - start[i] - velocity[i] * dt * f64::from(step);
             let way = off(0).hypot(off(1)).hypot(off(2)) / 2e-6;

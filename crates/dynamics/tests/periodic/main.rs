@@ -9,7 +9,7 @@ mod support;
 
 use std::sync::Arc;
 
-use contact::Side;
+use contact::{Meridian, Side};
 use dynamics::effects::FrameRotation;
 use dynamics::kinematics::Speed;
 use dynamics::modes::{bearing_modes, ring_modes};
@@ -214,7 +214,7 @@ fn motion_of(model: &Model, at_rest: &Model, steps: usize) -> End {
 
 #[track_caller]
 fn assert_same_motion(found: &End, expected: &End, tolerance: f64) {
-    let forces = |end: &End| end.state.forces.as_flattened().to_vec();
+    let forces = |end: &End| Meridian::flat(&end.state.forces);
     assert_near(&forces(found), &forces(expected), tolerance, "forces");
     for ([w, v, _], [expected, rate, _]) in found.rings.iter().zip(&expected.rings) {
         assert_near(w, expected, tolerance, "displacement");

@@ -121,13 +121,13 @@ fn forces_and_moves(yields: &[f64], gaps: &[Gap], presses: &[bool], half_load: f
 
 /// Equilibrium under a thrust, N, from the elastic bodies alone.
 pub fn solve(geometry: &BearingGeometry, raceways: &[Raceway; 2], sphere: &Sphere, thrust: f64) -> Found {
-    let offsets = Side::BOTH.map(|side| geometry.groove_centre(side)[1]);
+    let offsets = Side::BOTH.map(|side| geometry.groove_centre(side).axial);
     let n_inner = raceways[0].cells.len();
     let n = n_inner + raceways[1].cells.len();
     let yields = compliance(raceways, sphere, offsets);
     let half_load = 0.5 * thrust / geometry.n_balls as f64;
     let radius = 0.5 * geometry.ball_diameter;
-    let [r, z] = geometry.ball_centre();
+    let [r, z] = geometry.ball_centre().to_array();
     let mut place = [r + 1e-6, z + 15e-6, 30e-6];
     let mut presses = vec![true; n];
     for _ in 0..MOST_ROUNDS {

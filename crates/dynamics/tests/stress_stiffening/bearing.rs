@@ -58,13 +58,9 @@ fn harmonics_and_the_sparse_matrix_agree_and_the_ledger_closes() {
             })
         });
         let off = |[a, b]: [&MotionState; 2]| {
-            let size = |f: [f64; 2]| f[0].hypot(f[1]);
-            let largest = a.forces.iter().map(|f| size(*f)).fold(0.0, f64::max);
+            let largest = a.forces.iter().map(|f| f.norm()).fold(0.0, f64::max);
             let pairs = a.forces.iter().zip(&b.forces);
-            pairs
-                .map(|(a, b)| size([a[0] - b[0], a[1] - b[1]]))
-                .fold(0.0, f64::max)
-                / largest
+            pairs.map(|(a, b)| (*a - *b).norm()).fold(0.0, f64::max) / largest
         };
         let [[cyclic, sparse], [plain, _]] = &ends;
         let (same, other) = (off([cyclic, sparse]), off([cyclic, plain]));

@@ -70,11 +70,14 @@ impl InnerContact {
         let (q, u) = (solution.displacements.shaft, solution.displacements.balls[ball]);
         let (sin, cos) = g.azimuth(ball).sin_cos();
         let (groove, place) = (g.groove_centre(Side::Inner), g.ball_centre());
-        let centre = times(&rotation([q[3], q[4]]), [groove[0] * cos, groove[0] * sin, 0.0]);
+        let centre = times(
+            &rotation([q[3], q[4]]),
+            [groove.radial * cos, groove.radial * sin, 0.0],
+        );
         let moved = [0, 1, 2].map(|i| q[i] + centre[i]);
         let l = [
-            place[0] + u[0] - moved[0] * cos - moved[1] * sin,
-            place[1] + u[1] - groove[1] - moved[2],
+            place.radial + u.radial - moved[0] * cos - moved[1] * sin,
+            place.axial + u.axial - groove.axial - moved[2],
         ];
         let length = l[0].hypot(l[1]);
         let space = |v: [f64; 2]| [v[0] * cos, v[0] * sin, v[1]];

@@ -147,7 +147,7 @@ impl ShownList {
         let path = Path::new("scene of the step");
         let scene = Scene::parse(&first.scene, path, &[], MeshFiles::MayBeMissing)?;
         let geometry = geometry(&scene);
-        let [origin, _] = Side::BOTH.map(|side| geometry.groove_centre(side)[1]);
+        let [origin, _] = Side::BOTH.map(|side| geometry.groove_centre(side).axial);
         Ok(BearingBodies {
             number,
             origin,

@@ -27,10 +27,17 @@ fn state() -> MotionState {
         next += 0.1;
         next
     };
-    let mut pairs = |n: usize| (0..n).map(|_| [number(), number()]).collect::<Vec<_>>();
+    let mut pairs = |n: usize| {
+        let vector = |_| Meridian::new(number(), number());
+        (0..n).map(vector).collect::<Vec<_>>()
+    };
     let (balls, ball_velocities, ball_accelerations) = (pairs(2), pairs(2), pairs(2));
     let (trend, forces) = (pairs(6), pairs(4));
-    let places = [(); 3].map(|()| pairs(4).into_iter().map(PatchPlace::from_row).collect());
+    let place = |v: Meridian| PatchPlace {
+        angle: v.radial,
+        force: v.axial,
+    };
+    let places = [(); 3].map(|()| pairs(4).into_iter().map(place).collect());
     let mut list = |n: usize| (0..n).map(|_| number()).collect::<Vec<_>>();
     let body = BodyState([list(2), list(2), list(2)]);
     let ring = RingState::new(vec![f64::NAN, -0.0, 1e-300], list(3), list(3)).with_body(Some(body));

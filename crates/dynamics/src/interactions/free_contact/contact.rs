@@ -105,7 +105,7 @@ impl ContactStep {
             SlipAt::End => self.slip_at_end(&last, &x),
             SlipAt::Middle => mid.slip,
         };
-        let force = size(normal.force);
+        let force = Meridian::from(normal.force).norm();
         let number = slip.slip.map(|s| s.value);
         let slipping = self.slip_of(number);
         let traction = self.traction.places.traction(
@@ -114,7 +114,7 @@ impl ContactStep {
             &slipping,
             (force, self.small_slip),
         );
-        let load = [0, 1].map(|i| chain(normal.force[i], normal.tangent[i], last.reach));
+        let load = [0, 1].map(|i| chain(normal.force[i], normal.tangent[i].into(), last.reach));
         let action = actions(&traction, &slip, (force, load));
         let mut resists = [Jet::default(); N_LENGTHS];
         self.add_normal(&mid, (&start, &last), load, &mut resists);
@@ -131,7 +131,7 @@ impl ContactStep {
         };
         FoundContact {
             resists,
-            reach: [start.reach, last.reach].map(|l| l.map(|x| x.value)),
+            reach: [start.reach, last.reach].map(|l| l.map(|x| x.value).into()),
             normal,
             traction,
             slip: slipping,
@@ -148,7 +148,7 @@ impl ContactStep {
         let x: [Jet; N_LENGTHS] = std::array::from_fn(|i| Jet::constant(end[i]));
         let last = self.standing_at_end(&x);
         let place = 2.0 * f64::EPSILON * last.radius.value;
-        let length = size(last.reach.map(|l| l.value));
+        let length = Meridian::from(last.reach.map(|l| l.value)).norm();
         (place * self.law.evaluate(length - self.touching).tangent).max(self.law.evaluate(place).force)
     }
 
@@ -381,7 +381,7 @@ impl ContactStep {
 
 /// A component of the normal force as it grows with l at the end.
 fn chain(value: f64, tangent: Meridian, reach: [Jet; 2]) -> Jet {
-    let mut jet = reach[0] * tangent[0] + reach[1] * tangent[1];
+    let mut jet = reach[0] * tangent.radial + reach[1] * tangent.axial;
     jet.value = value;
     jet
 }
@@ -406,8 +406,4 @@ fn actions(traction: &Resultant, slip: &SlipJets, (force, load): (f64, [Jet; 2])
         jet.value = traction.action[i];
         jet
     })
-}
-
-fn size(v: Meridian) -> f64 {
-    v[0].hypot(v[1])
 }

@@ -149,7 +149,7 @@ impl RollingSurface {
             }
         });
         let strips = self.strips.moved(places[1]).between([places[0], places[2]]);
-        let l = [start.reach, end.reach].map(|l| l.map(|x| x.value));
+        let l = [start.reach, end.reach].map(|l| Meridian::from(l.map(|x| x.value)));
         let passage = Passage {
             strips: &strips,
             terms,
@@ -167,7 +167,10 @@ impl RollingSurface {
                 } else {
                     passage.slope()
                 };
-                ((torque, [0.0; 2]), passage.moment(ball, course, works.of_ball))
+                (
+                    (torque, Meridian::default()),
+                    passage.moment(ball, course, works.of_ball),
+                )
             }
             None => (passage.torque(change), [0.0; 3]),
         };
@@ -222,7 +225,7 @@ impl Passage<'_> {
     /// end.
     fn torque(&self, change: f64) -> (f64, Meridian) {
         if change.abs() <= LEAST_CHANGE {
-            return (self.slope(), [0.0; 2]);
+            return (self.slope(), Meridian::default());
         }
         let (site, l) = (self.site(self.strips), self.l);
         let ends = [0, 1].map(|end| site.at_end(end, l[end]));
@@ -232,7 +235,7 @@ impl Passage<'_> {
             ends[1].energy - middle[1].energy,
         ];
         let [on_middle, on_last] = [&middle[1], &ends[1]].map(|at| force_on_ring(at, l[1]));
-        let growth = [0, 1].map(|i| -(on_last[i] - on_middle[i]) / change);
+        let growth = (on_last - on_middle).map(|force| -force / change);
         (-(work[0] + work[1]) / change, growth)
     }
 
@@ -342,6 +345,6 @@ pub(super) fn along_track(start: &Standing, end: &Standing) -> AlongTrack {
 
 /// A torque as it grows with l at the end.
 pub(super) fn chained((value, growth): (f64, Meridian), end: &Standing) -> Jet {
-    let jet = end.reach[0] * growth[0] + end.reach[1] * growth[1];
+    let jet = end.reach[0] * growth.radial + end.reach[1] * growth.axial;
     Jet { value, ..jet }
 }

@@ -18,10 +18,12 @@
 //! Contact damping takes its coefficient at the approach at which a smooth groove has the contact's force.
 
 use contact::law::ContactForce;
-use contact::{ContactLaw, StripForce, StripLine};
+use contact::{ContactLaw, Meridian, StripForce, StripLine};
 
 use super::contact_damping::{ContactDamping, coefficient};
-use super::discrete_gradient::{ContactScheme, GAUSS, MeanForce, drop_pull, mean_direction, size, unit};
+use super::discrete_gradient::{
+    ContactScheme, ContactTangent, GAUSS, MeanForce, drop_pull, mean_direction, size, unit,
+};
 use crate::surfaces::Strips;
 
 /// Changes over the size of the contact below which the mean force is integrated: where it bends over a profile or at
@@ -42,13 +44,13 @@ pub struct Lateral {
 
 impl Lateral {
     /// Force on the ring, N, at a contact with the normal `n` and |l| = `length`.
-    pub fn force(&self, n: [f64; 2], length: f64) -> [f64; 2] {
-        across(n).map(|t| self.moment / length * t)
+    pub fn force(&self, n: Meridian, length: f64) -> Meridian {
+        Meridian::new(-n.axial, n.radial).map(|t| self.moment / length * t)
     }
 
     /// What it adds to the second derivatives of V(|l|, alpha) over l, N/m.
-    pub fn tangent(&self, n: [f64; 2], length: f64) -> [[f64; 2]; 2] {
-        let t = across(n);
+    pub fn tangent(&self, n: Meridian, length: f64) -> ContactTangent {
+        let (n, t) = (n.to_array(), across(n.to_array()));
         let mixed = (self.cross - self.moment / length) / length;
         let own = self.bend / (length * length);
         [0, 1].map(|i| [0, 1].map(|j| mixed * (n[i] * t[j] + t[i] * n[j]) + own * t[i] * t[j]))
@@ -102,30 +104,30 @@ impl<'s> StripSite<'s> {
     }
 
     /// The contact at l on the surface of the step's middle.
-    pub fn at(&self, l: [f64; 2]) -> StripForce {
-        self.evaluate(self.strips.line(), size(l) - self.touching, self.angle(l))
+    pub fn at(&self, l: Meridian) -> StripForce {
+        self.evaluate(self.strips.line(), l.norm() - self.touching, self.angle(l))
     }
 
     /// The contact at l on the surface of the start, 0, or the end, 1, of the step.
-    pub fn at_end(&self, end: usize, l: [f64; 2]) -> StripForce {
+    pub fn at_end(&self, end: usize, l: Meridian) -> StripForce {
         let line = self.strips.lines_at_ends()[end];
-        self.evaluate(line, size(l) - self.touching, self.angle(l))
+        self.evaluate(line, l.norm() - self.touching, self.angle(l))
     }
 
     /// Energies with the lengths and on the lines of start and end of a step, J.
-    pub fn energies_at_ends(&self, l: [[f64; 2]; 2]) -> [f64; 2] {
+    pub fn energies_at_ends(&self, l: [Meridian; 2]) -> [f64; 2] {
         [0, 1].map(|end| self.at_end(end, l[end]).energy)
     }
 
-    fn angle(&self, l: [f64; 2]) -> f64 {
-        (self.sign * l[1]).atan2(self.sign * l[0])
+    fn angle(&self, l: Meridian) -> f64 {
+        (self.sign * l.axial).atan2(self.sign * l.radial)
     }
 
     /// Mean force over a step between these lengths, m. `weight` is that of the start; `damping` acts over a step of so
     /// many seconds.
     pub fn mean_force(
         &self,
-        l: [[f64; 2]; 2],
+        l: [Meridian; 2],
         (scheme, weight): (ContactScheme, f64),
         damping: Option<(&ContactDamping, f64)>,
     ) -> MeanForce {
@@ -144,11 +146,13 @@ impl<'s> StripSite<'s> {
     }
 }
 
-/// Force on the ring [radial, axial], N, of a contact at l.
-pub fn force_on_ring(found: &StripForce, l: [f64; 2]) -> [f64; 2] {
-    let (n, length) = (unit(l), size(l));
+/// Force on the ring, N, of a contact at l.
+pub fn force_on_ring(found: &StripForce, l: Meridian) -> Meridian {
+    let (n, length) = (unit(l.to_array()), l.norm());
     let t = across(n);
-    [0, 1].map(|i| found.force * n[i] + found.moment / length * t[i])
+    [0, 1]
+        .map(|i| found.force * n[i] + found.moment / length * t[i])
+        .into()
 }
 
 /// t = (-n_axial, n_radial).
@@ -174,10 +178,11 @@ struct StripStep<'s> {
 }
 
 impl<'s> StripStep<'s> {
-    fn new(site: &'s StripSite<'s>, l: [[f64; 2]; 2]) -> StripStep<'s> {
+    fn new(site: &'s StripSite<'s>, [start, end]: [Meridian; 2]) -> StripStep<'s> {
+        let l = [start.to_array(), end.to_array()];
         let [l0, l1] = l;
         let turn = (l0[0] * l1[1] - l0[1] * l1[0]).atan2(l0[0] * l1[0] + l0[1] * l1[1]);
-        let angle = site.angle(l0);
+        let angle = site.angle(start);
         let approach = l.map(|l| size(l) - site.touching);
         let at = [[approach[0], angle], [approach[1], angle + turn]];
         StripStep {
@@ -356,8 +361,8 @@ impl<'s> StripStep<'s> {
             let [g, angle] = self.at[end];
             let (found, lateral) = self.site.state(g, angle);
             let (n, length) = (unit(self.l[end]), size(self.l[end]));
-            let force = lateral.force(n, length);
-            let more = lateral.tangent(n, length);
+            let force = lateral.force(n.into(), length).to_array();
+            let more = lateral.tangent(n.into(), length);
             for i in 0..2 {
                 result.force[i] += share * sign * (found.force * n[i] + force[i]);
                 for j in 0..2 {

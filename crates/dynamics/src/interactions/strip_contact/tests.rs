@@ -74,9 +74,9 @@ fn the_discrete_gradient_exchanges_exactly_the_stored_energy() {
         let law = contact_law(compliance);
         let site = StripSite::new(&strips, &law, TOUCHING, 1.0);
         for l in paths() {
-            let found = site.mean_force(l, CONSERVING, None);
+            let found = site.mean_force(l.map(Meridian::from), CONSERVING, None);
             let (f, d) = (found.force, growth(l));
-            let [start, end] = site.energies_at_ends(l);
+            let [start, end] = site.energies_at_ends(l.map(Meridian::from));
             let work = f[0] * d[0] + f[1] * d[1];
             let scale = start.abs().max(end.abs()).max(1e-12);
             assert!(
@@ -114,7 +114,7 @@ fn a_smooth_groove_has_the_means_of_hertz() {
         ] {
             let viscous = [crate::interactions::contact_damping::viscous(&damping, 1e-5, TOUCHING, l); 2];
             let exact = mean_forces(&ball, &lengths, scheme, Some(viscous)).contacts[0];
-            let found = site.mean_force(l, scheme, Some((&damping, 1e-5)));
+            let found = site.mean_force(l.map(Meridian::from), scheme, Some((&damping, 1e-5)));
             for i in 0..2 {
                 let size = size(exact.force).max(1e-3);
                 assert!(
@@ -147,7 +147,7 @@ fn tangents_are_derivatives() {
         .flat_map(|s| [(s, None), (s, Some((&damping, 1e-5)))])
     {
         for l in paths() {
-            let at = |l: [[f64; 2]; 2]| site.mean_force(l, scheme, damping);
+            let at = |l: [[f64; 2]; 2]| site.mean_force(l.map(Meridian::from), scheme, damping);
             let (found, h) = (at(l), 1e-11);
             for j in 0..2 {
                 let (mut low, mut high) = (l, l);
