@@ -41,7 +41,7 @@ impl Affine {
     }
 
     /// Reference coordinates of a point (azimuth, groove angle), rad, whatever the turn of its azimuth.
-    #[inline]
+    #[inline(always)]
     pub fn reference(&self, [azimuth, angle]: [f64; 2]) -> [f64; 2] {
         let azimuth = unwrap_near(azimuth, self.origin[0]);
         let from = [azimuth - self.origin[0], angle - self.origin[1]];

@@ -192,6 +192,7 @@ impl RacewaySurface {
     }
 
     /// The same, looked for from the facet `near` on across the edges of facets.
+    #[inline]
     pub fn locate_near(&self, near: usize, azimuth: f64, angle: f64) -> Result<Location, ContactError> {
         let mut facet = near;
         for _ in 0..MOST_EDGES {
@@ -210,11 +211,17 @@ impl RacewaySurface {
     }
 
     /// Reference coordinates in a facet; None far from it.
-    #[inline]
+    #[inline(always)]
     fn reference(&self, facet: usize, azimuth: f64, angle: f64) -> Option<[f64; 2]> {
-        if let Some(map) = &self.maps[facet] {
-            return Some(map.reference([azimuth, angle]));
+        match &self.maps[facet] {
+            Some(map) => Some(map.reference([azimuth, angle])),
+            None => self.reference_by_newton(facet, azimuth, angle),
         }
+    }
+
+    /// The same of a facet whose map is not affine.
+    #[inline(never)]
+    fn reference_by_newton(&self, facet: usize, azimuth: f64, angle: f64) -> Option<[f64; 2]> {
         let n = self.kind.n_nodes();
         let coordinates = &self.coordinates[n * facet..n * (facet + 1)];
         let target = [unwrap_near(azimuth, coordinates[0][0]), angle];

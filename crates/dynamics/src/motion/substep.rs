@@ -159,11 +159,11 @@ impl Motion<'_> {
         })
     }
 
-    /// Newton on the part. In a round of a turning frame it starts from the solution of the round before, with its
-    /// tangent.
+    /// Newton on the part. Steps are short, so that one tangent serves all iterations as a rule. In a round of a
+    /// turning frame it starts from the solution of the round before, with its tangent.
     fn solve_again(&self, part: &mut StepPart<'_>) -> Result<StepSolution, DynamicsError> {
         let policy = Policy {
-            keeps_factors: part.before.is_some(),
+            keeps_factors: true,
             ..policy(part.scale, None, &self.costs)
         };
         let before = part.before.take();

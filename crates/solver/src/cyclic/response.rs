@@ -137,25 +137,25 @@ impl ResponseTable {
 
     fn of_all<const D: usize>(&self, patches: &[PatchWeights]) -> Vec<f64> {
         let (n, m) = (patches.len(), D * patches.len());
-        // Of evenly spaced patches, pairs that are equally far apart read the same responses: they come together.
+        // Of evenly spaced patches in order, pairs that are equally far apart read the same responses: they come
+        // together. What is measured follows what is loaded by at most half a turn, so that half of the table is read.
         let apart = |k: usize| -> Vec<[[f64; D]; D]> {
-            let pairs = patches[k..].iter().zip(patches);
+            let pairs = (0..pairs_apart(n, k)).map(|b| (&patches[(b + k) % n], &patches[b]));
             pairs.map(|(a, b)| self.between_patches(a, b)).collect()
         };
-        let blocks: Vec<_> = (0..n).into_par_iter().map(apart).collect();
+        let blocks: Vec<_> = (0..=n / 2).into_par_iter().map(apart).collect();
         let mut all = vec![0.0; m * m];
+        // Half of it is computed, the other half mirrored: reciprocity.
         for (k, blocks) in blocks.iter().enumerate() {
             for (b, block) in blocks.iter().enumerate() {
-                let a = b + k;
-                for (p, row) in block.iter().enumerate() {
-                    all[(D * a + p) * m + D * b..][..D].copy_from_slice(row);
+                let a = (b + k) % n;
+                for (p, q) in (0..D * D)
+                    .map(|i| (i / D, i % D))
+                    .filter(|(p, q)| k > 0 || q <= p)
+                {
+                    let (i, j) = (D * a + p, D * b + q);
+                    (all[m * i + j], all[m * j + i]) = (block[p][q], block[p][q]);
                 }
-            }
-        }
-        // Half of it is computed, the other half mirrored: reciprocity.
-        for i in 0..m {
-            for j in 0..i {
-                all[m * j + i] = all[m * i + j];
             }
         }
         all
@@ -238,6 +238,11 @@ impl ResponseTable {
     pub fn bytes(&self) -> usize {
         size_of::<f64>() * self.responses.capacity()
     }
+}
+
+/// Number of pairs among n things in a circle of which the second is k places behind the first, each pair once.
+fn pairs_apart(n: usize, k: usize) -> usize {
+    if k > 0 && 2 * k == n { k } else { n }
 }
 
 /// Harmonic responses of the chosen dofs to each unit load of the real basis, `[force][displacement][n_harmonics]`.
