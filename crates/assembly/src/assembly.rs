@@ -311,11 +311,7 @@ impl AssemblySolver {
                     on_bodies: forces,
                 });
             }
-            loose = if is_last {
-                0.0
-            } else {
-                LOOSEST.min(SHARE_OF_CHANGE * largest)
-            };
+            loose = LOOSEST.min(SHARE_OF_CHANGE * largest * f64::from(!is_last));
             history.push(largest);
             if history.len() == MOST_BODY_ROUNDS {
                 let body = changes.iter().position(|c| *c == largest).unwrap_or(0);

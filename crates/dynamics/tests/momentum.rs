@@ -2,7 +2,7 @@
 
 mod support;
 
-use contact::{HertzContact, Side, SphereCompliance};
+use contact::{HertzContact, Meridian, Side, SphereCompliance};
 use dynamics::kinematics::Speed;
 use dynamics::motion::{Motion, MotionSettings, MotionState, StepCache};
 use dynamics::{ContactMode, Hold, Model, ShaftDof};
@@ -20,7 +20,7 @@ fn floating() -> Model {
     model.geometry.n_balls = 2;
     // Room between the balls and the inner ring, which stands where they lie on the bottom of its groove.
     model.geometry.inner_raceway_diameter -= 0.1e-3;
-    let back = model.geometry.ball_centre()[1] - model.geometry.groove_centre(Side::Inner)[1];
+    let back = model.geometry.ball_centre().axial - model.geometry.groove_centre(Side::Inner).axial;
     model.shaft = [0.0, 0.0, back, 0.0, 0.0].map(ShaftDof::Prescribed);
     model
 }
@@ -69,8 +69,8 @@ fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
     ]
 }
 
-fn in_space(v: [f64; 2], azimuth: f64) -> [f64; 3] {
-    [v[0] * azimuth.cos(), v[0] * azimuth.sin(), v[1]]
+fn in_space(v: Meridian, azimuth: f64) -> [f64; 3] {
+    [v.radial * azimuth.cos(), v.radial * azimuth.sin(), v.axial]
 }
 
 fn momentum(model: &Model, motion: &Motion<'_>, state: &MotionState) -> Momentum {
@@ -82,7 +82,7 @@ fn momentum(model: &Model, motion: &Motion<'_>, state: &MotionState) -> Momentum
     let groove = model.geometry.groove_centre(Side::Outer);
     for side in Side::BOTH {
         if let Some([linear, angular]) = motion.ring_momentum(state, side) {
-            let beside = [0.0, 0.0, model.geometry.groove_centre(side)[1] - groove[1]];
+            let beside = [0.0, 0.0, model.geometry.groove_centre(side).axial - groove.axial];
             let lever = cross(beside, linear);
             sum.add([linear, [0, 1, 2].map(|i| angular[i] + lever[i])]);
         }
@@ -90,8 +90,8 @@ fn momentum(model: &Model, motion: &Motion<'_>, state: &MotionState) -> Momentum
     for ball in 0..model.geometry.n_balls {
         let azimuth = motion.ball_azimuth(ball, 0.0);
         let (x, v) = (state.balls[ball], state.ball_velocities[ball]);
-        let p = in_space([mass * v[0], mass * v[1]], azimuth);
-        let place = [centre[0] + x[0], centre[1] - groove[1] + x[1]];
+        let p = in_space(v.map(|v| mass * v), azimuth);
+        let place = centre + x - Meridian::new(0.0, groove.axial);
         sum.add([p, cross(in_space(place, azimuth), p)]);
     }
     sum
@@ -105,11 +105,10 @@ fn thrown(model: &Model, velocities: Vec<[f64; 2]>, steps: usize, looked_at: usi
         ShaftDof::Prescribed(x) => x,
         ShaftDof::Free => unreachable!(),
     });
-    let speed = velocities
-        .iter()
-        .fold(0.0f64, |most, v| most.max(v[0].hypot(v[1])));
+    let velocities: Vec<Meridian> = velocities.into_iter().map(Meridian::from).collect();
+    let speed = velocities.iter().map(|v| v.norm()).fold(0.0, f64::max);
     let scale = model.ball_mass() * speed;
-    let lever = model.geometry.ball_centre()[0] * scale;
+    let lever = model.geometry.ball_centre().radial * scale;
     let mut state = motion.rest(shaft, [0.0; 5]);
     state.ball_velocities = velocities;
     state = motion.with_energies(state);
@@ -118,7 +117,7 @@ fn thrown(model: &Model, velocities: Vec<[f64; 2]>, steps: usize, looked_at: usi
     let mut cache = StepCache::default();
     for step in 1..=steps {
         state = motion.step(&state, &mut cache).unwrap().0;
-        let forces = state.forces.iter().map(|f| f[0].hypot(f[1]));
+        let forces = state.forces.iter().map(|f| f.norm());
         most = forces.fold(most, f64::max);
         if step % (steps / looked_at) != 0 {
             continue;
