@@ -38,6 +38,8 @@ type Rigid = [f64; RIGID_MOTIONS];
 const TOLERANCE: f64 = 1e-9;
 /// The same over that load itself, which moves contacts by a millionth of what they move.
 const SHARE: f64 = 1e-3;
+/// Rounds in which contacts answer to it: each leaves a millionth. Beyond is round-off.
+const MOST_ROUNDS: usize = 2;
 /// Corrections of the end of a step: each leaves strains of what there was before.
 const CORRECTIONS: usize = 2;
 
@@ -69,6 +71,8 @@ struct FreeStep<'a> {
     contacts: ContactPorts,
     /// The rigid acceleration that contacts see.
     acceleration: Rigid,
+    /// How often it has changed for them.
+    rounds: usize,
     answer: PortAnswer,
 }
 
@@ -344,6 +348,7 @@ impl StepFactor for FreeFactor {
             known,
             contacts: ContactPorts::new(self.body.held(), contacts),
             acceleration: [0.0; RIGID_MOTIONS],
+            rounds: 0,
         })
     }
 }
@@ -414,7 +419,10 @@ impl ElasticStep for FreeStep<'_> {
             .factor
             .balanced(ends, self.acceleration, &self.known.load, &contacts);
         let change = [0, 1, 2, 3, 4, 5].map(|i| found[i] - self.acceleration[i]);
-        if rigid.size(change) > (TOLERANCE * scale).max(SHARE * rigid.size(found)) {
+        let limit = (TOLERANCE * scale).max(SHARE * rigid.size(found));
+        // What no contact presses on keeps to no contact.
+        if scale > 0.0 && self.rounds < MOST_ROUNDS && rigid.size(change) > limit {
+            self.rounds += 1;
             self.acceleration = found;
             self.renew_answer();
             return End::Again;
