@@ -311,7 +311,7 @@ impl AssemblySolver {
                     on_bodies: forces,
                 });
             }
-            loose = LOOSEST.min(SHARE_OF_CHANGE * largest * f64::from(!is_last));
+            loose = tolerance_after(largest, is_last);
             history.push(largest);
             if history.len() == MOST_BODY_ROUNDS {
                 let body = changes.iter().position(|c| *c == largest).unwrap_or(0);
@@ -395,6 +395,15 @@ impl AskedTolerances {
         for (bearing, force) in assembly.bearings.iter_mut().zip(&self.forces) {
             bearing.model.tolerances.force = force.max(loose);
         }
+    }
+}
+
+/// Tolerance of the forces in the round after one that changed the forces on the bodies by this share: where that might
+/// have been the last, it is that of the scene.
+fn tolerance_after(change: f64, is_last: bool) -> f64 {
+    match is_last {
+        true => 0.0,
+        false => LOOSEST.min(SHARE_OF_CHANGE * change),
     }
 }
 

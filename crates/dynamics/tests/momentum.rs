@@ -2,7 +2,7 @@
 
 mod support;
 
-use contact::{HertzContact, Meridian, Side, SphereCompliance};
+use contact::{HertzContact, Meridian, Side, SphereCompliance, cross};
 use dynamics::kinematics::Speed;
 use dynamics::motion::{Motion, MotionSettings, MotionState, StepCache};
 use dynamics::{ContactMode, Hold, Model, ShaftDof};
@@ -59,14 +59,6 @@ impl Momentum {
         let most = |a: [f64; 3], b: [f64; 3]| (0..3).map(|i| (a[i] - b[i]).abs()).fold(0.0, f64::max);
         [most(self.linear, since.linear), most(self.angular, since.angular)]
     }
-}
-
-fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [
-        a[1] * b[2] - a[2] * b[1],
-        a[2] * b[0] - a[0] * b[2],
-        a[0] * b[1] - a[1] * b[0],
-    ]
 }
 
 fn in_space(v: Meridian, azimuth: f64) -> [f64; 3] {

@@ -11,6 +11,7 @@
 use std::sync::Arc;
 
 use body::BesideRing;
+use contact::cross;
 
 use crate::coordinates::{Coordinates, RIGID_MOTIONS};
 use crate::division::NodePlaces;
@@ -248,17 +249,7 @@ impl dyn ElasticBody + '_ {
     /// Linear momentum, kg m/s, and moment of momentum about the point z = 0 of the mesh's axis, kg m^2/s.
     pub fn momentum(&self, state: &RingState) -> [[f64; 3]; 2] {
         let p = self.matrices().nodal_mass_product(&self.nodal(state.velocity()));
-        let w = self.nodal(state.displacement());
-        let sums = self.held().places.sum(|node, x| {
-            let p = &p[3 * node..3 * node + 3];
-            let x = [0, 1, 2].map(|c| x[c] + w[3 * node + c]);
-            let moment = [0, 1, 2].map(|i| {
-                let (j, k) = ((i + 1) % 3, (i + 2) % 3);
-                x[j] * p[k] - x[k] * p[j]
-            });
-            [p[0], p[1], p[2], moment[0], moment[1], moment[2]]
-        });
-        [[sums[0], sums[1], sums[2]], [sums[3], sums[4], sums[5]]]
+        resultant(&self.held().places, Some(&self.nodal(state.displacement())), &p)
     }
 
     /// Energy that Rayleigh damping took in a step, J: C v[1-af] times dw.
@@ -344,6 +335,18 @@ impl dyn ElasticBody + '_ {
         let a = vec![0.0; w.len()];
         RingState::new(w, v, a).with_body(body)
     }
+}
+
+/// Sum of nodal vectors `f`, and of their moments about the point z = 0 of the mesh's axis, at nodes that have moved by
+/// `w`. Collective.
+pub(crate) fn resultant(places: &NodePlaces, w: Option<&[f64]>, f: &[f64]) -> [[f64; 3]; 2] {
+    let sums = places.sum(|node, x| {
+        let at = |c: usize| w.map_or(0.0, |w| w[3 * node + c]);
+        let f = [0, 1, 2].map(|c| f[3 * node + c]);
+        let [mx, my, mz] = cross([0, 1, 2].map(|c| x[c] + at(c)), f);
+        [f[0], f[1], f[2], mx, my, mz]
+    });
+    [[sums[0], sums[1], sums[2]], [sums[3], sums[4], sums[5]]]
 }
 
 /// Generalised inertia load of a turning frame, of coordinates, at displacement and velocity `w` and `v`, less what the

@@ -18,20 +18,22 @@
 
 use std::sync::Arc;
 
+use contact::cross;
 use dense::DenseLu;
 use timer::Laps;
 
-use crate::body::{ElasticBody, HeldRing, frame_inertia};
+use crate::body::{ElasticBody, HeldRing, frame_inertia, resultant};
 use crate::coordinates::RIGID_MOTIONS;
 use crate::error::RingError;
 use crate::integrator::StepScheme;
 use crate::matrices::Matrix;
+use crate::nodal::columns::Ports;
 use crate::sparse::{SparseLoad, sparse_dot};
 use crate::state::RingState;
 use crate::step::{ElasticStep, End, Feet, Known, KnownLoad, PortAnswer, PortForces, Settling, StepFactor};
-use crate::vectors::{combined, dot};
+use crate::vectors::{add_part, combined};
 
-/// One number of each rigid motion: x, y, z, tilts, rotation about z.
+/// One number of each rigid motion: along x, y, z, then about them, through the point z = 0 of the mesh's axis.
 type Rigid = [f64; RIGID_MOTIONS];
 
 /// Change of the load of the rigid acceleration over the largest force of the bearing at which contacts keep theirs.
@@ -78,17 +80,14 @@ struct FreeStep<'a> {
 
 /// The ports of the contacts of a ring.
 struct ContactPorts {
-    /// Loads of unit forces.
-    loads: Vec<SparseLoad>,
-    /// Directions of these forces.
+    ports: Ports,
+    /// Directions of the forces at them.
     directions: Vec<[f64; 3]>,
-    /// Ports of a contact.
-    of_one: usize,
 }
 
 /// Forces of the contacts.
 struct ContactForces<'a> {
-    ports: &'a ContactPorts,
+    on: &'a ContactPorts,
     at_ports: &'a [f64],
     /// At the nodes, `[n_nodes][3]` flat.
     nodal: Vec<f64>,
@@ -126,8 +125,7 @@ impl FreeFactor {
         let (body, held) = (&*self.body, self.body.held());
         let s = self.scheme.integrator;
         let at = |weight: f64, from: &[f64], to: &[f64]| combined([weight, 1.0 - weight], from, to);
-        let moved = at(s.alpha_f, old.displacement(), new.displacement());
-        let w = body.nodal(&moved);
+        let w = body.nodal(&at(s.alpha_f, old.displacement(), new.displacement()));
         let v = body.nodal(&at(s.alpha_f, old.velocity(), new.velocity()));
         let mut field = body.nodal(&at(s.alpha_m, old.acceleration(), new.acceleration()));
         let drag = held.damping[0];
@@ -142,24 +140,14 @@ impl FreeFactor {
                 .zip(body.nodal(load))
                 .for_each(|(net, f)| *net -= f);
         }
-        let along = |place: [f64; 3], force: &[f64]| {
-            unit_motions().map(|unit| dot(&held.coordinates.whole_rigid_motion(place, unit), force))
-        };
-        let lack = held.places.sum(|node, x| {
-            let dofs = 3 * node..3 * node + 3;
-            let place = [0, 1, 2].map(|c| x[c] + w[3 * node + c]);
-            let (of_net, of_contacts) = (along(place, &net[dofs.clone()]), along(x, &contacts.nodal[dofs]));
-            [0, 1, 2, 3, 4, 5].map(|i| of_net[i] - of_contacts[i])
-        });
-        let more = contacts.moment(&held.coordinates.reduce(&w));
-        [
-            lack[0],
-            lack[1],
-            lack[2],
-            lack[3] - more[0],
-            lack[4] - more[1],
-            lack[5] - more[2],
-        ]
+        let [force, moment] = resultant(&held.places, Some(&w), &net);
+        let [on_contacts, about_contacts] = resultant(&held.places, None, &contacts.nodal);
+        let moved = contacts.moment_by(&held.coordinates.reduce(&w));
+        let forces = [0, 1, 2].map(|c| force[c] - on_contacts[c]);
+        let moments = [0, 1, 2].map(|c| moment[c] - about_contacts[c] - moved[c]);
+        let mut lack = [0.0; RIGID_MOTIONS];
+        lack.copy_from_slice([forces, moments].as_flattened());
+        lack
     }
 
     /// The state with another rigid acceleration over the step that led to it.
@@ -200,13 +188,12 @@ impl FreeFactor {
 impl RigidResponse {
     fn new(body: &dyn ElasticBody, scheme: StepScheme) -> Result<RigidResponse, RingError> {
         let held = body.held();
-        let field = |unit: Rigid| {
-            let nodal = held
-                .places
-                .field(|x| held.coordinates.whole_rigid_motion(x, unit));
-            body.state_of_coordinates(held.coordinates.reduce(&nodal))
+        let field = |motion: usize| {
+            let axis = [0, 1, 2].map(|c| f64::from(c == motion % 3));
+            let at = |x: [f64; 3]| if motion < 3 { axis } else { cross(axis, x) };
+            body.state_of_coordinates(held.coordinates.reduce(&held.places.field(at)))
         };
-        let vectors: Vec<Vec<f64>> = unit_motions().map(field).into();
+        let vectors: Vec<Vec<f64>> = (0..RIGID_MOTIONS).map(field).collect();
         let by_others = |a: &Vec<f64>| {
             vectors
                 .iter()
@@ -265,59 +252,51 @@ impl RigidResponse {
 
 impl ContactPorts {
     fn new(held: &HeldRing, contacts: Feet<'_>) -> ContactPorts {
-        let coordinates = &held.coordinates;
-        let loads = coordinates.of_contacts(contacts.weights);
+        let ports = Ports::new(held, contacts);
         let direction = |load: &SparseLoad| {
             let mut sum = [0.0; 3];
-            load.iter()
-                .for_each(|&(i, value)| sum[coordinates.free()[i] % 3] += value);
+            let free = held.coordinates.free();
+            load.iter().for_each(|&(i, value)| sum[free[i] % 3] += value);
             sum
         };
         ContactPorts {
-            directions: loads.iter().map(direction).collect(),
-            loads,
-            of_one: 2 * contacts.per_contact,
+            directions: ports.contacts.iter().map(direction).collect(),
+            ports,
         }
     }
 
-    fn under<'a>(&'a self, held: &HeldRing, at_ports: &'a [f64]) -> ContactForces<'a> {
+    fn under<'a>(&'a self, held: &HeldRing, forces: PortForces<'a>) -> ContactForces<'a> {
         let mut sum = vec![0.0; held.coordinates.n()];
-        for (load, force) in self.loads.iter().zip(at_ports) {
-            load.iter().for_each(|&(i, value)| sum[i] += value * force);
-        }
+        self.ports
+            .loads(held, forces)
+            .for_each(|(i, force)| sum[i] += force);
         ContactForces {
-            ports: self,
-            at_ports,
+            on: self,
+            at_ports: forces.contacts,
             nodal: held.coordinates.expand(&sum),
         }
     }
 }
 
 impl ContactForces<'_> {
-    /// Moment about the undeformed places of the contacts, which have moved by the displacement `w`, N m.
-    fn moment(&self, w: &[f64]) -> [f64; 3] {
-        let ports = self.ports;
-        let numbers: Vec<usize> = (0..self.at_ports.len()).collect();
-        let of_contact = |ports_of: &[usize]| {
-            let (mut motion, mut force) = ([0.0; 3], [0.0; 3]);
-            for &port in ports_of {
-                let moved = sparse_dot(&ports.loads[port], w);
-                for (c, direction) in ports.directions[port].into_iter().enumerate() {
-                    motion[c] += moved * direction;
-                    force[c] += self.at_ports[port] * direction;
-                }
-            }
-            let [[a, b, c], [x, y, z]] = [motion, force];
-            [b * z - c * y, c * x - a * z, a * y - b * x]
+    /// Moment by the displacement `w` of the contacts, N m: that of their forces about where they were.
+    fn moment_by(&self, w: &[f64]) -> [f64; 3] {
+        let ContactPorts { ports, directions } = self.on;
+        let at_ports = ports.contacts.iter().zip(directions).zip(self.at_ports);
+        let all: Vec<_> = at_ports
+            .map(|((load, direction), force)| [sparse_dot(load, w), *force].map(|x| direction.map(|d| x * d)))
+            .collect();
+        let sum = |a: [f64; 3], b: [f64; 3]| [0, 1, 2].map(|c| a[c] + b[c]);
+        let of_contact = |of_ports: &[[[f64; 3]; 2]]| {
+            let zero = [[0.0; 3]; 2];
+            let [motion, force] = of_ports
+                .iter()
+                .fold(zero, |[u, f], [du, df]| [sum(u, *du), sum(f, *df)]);
+            cross(motion, force)
         };
-        let moments = numbers.chunks(ports.of_one.max(1)).map(of_contact);
-        moments.fold([0.0; 3], |sum, moment| [0, 1, 2].map(|c| sum[c] + moment[c]))
+        let contacts = all.chunks(2 * ports.per_contact.max(1));
+        contacts.map(of_contact).fold([0.0; 3], sum)
     }
-}
-
-/// The rigid motions by one of each.
-fn unit_motions() -> [Rigid; RIGID_MOTIONS] {
-    [0, 1, 2, 3, 4, 5].map(|i| [0, 1, 2, 3, 4, 5].map(|k| f64::from(i == k)))
 }
 
 impl StepFactor for FreeFactor {
@@ -361,12 +340,7 @@ impl FreeStep<'_> {
             return;
         }
         let motion = self.factor.rigid.answer(self.acceleration);
-        let ports = self
-            .answer
-            .predicted
-            .iter_mut()
-            .zip(self.inner.at_contacts(&motion));
-        ports.for_each(|(predicted, more)| *predicted += more);
+        add_part(&mut self.answer.predicted, &self.inner.at_contacts(&motion));
     }
 }
 
@@ -413,7 +387,7 @@ impl ElasticStep for FreeStep<'_> {
         let FreeFactor {
             body, inner, rigid, ..
         } = self.factor;
-        let contacts = self.contacts.under(body.held(), forces.contacts);
+        let contacts = self.contacts.under(body.held(), forces);
         let ends = [self.old, &ended.state];
         let (state, found) = self
             .factor

@@ -82,9 +82,7 @@ impl<'m> HeldPart<'m> {
         part.clock.lap();
         part.parts.shaft.imposed = shaft.map(Some);
         let before = Some(std::mem::take(&mut self.solution.unknowns)).filter(|x| !x.is_empty());
-        // What holds the shaft asks again and again, near what it asked before.
         let policy = Policy {
-            keeps_factors: true,
             ends_at_floor: true,
             blocks: &part.parts.kinematic_blocks(),
             ..policy(part.scale, None, &self.motion.costs)

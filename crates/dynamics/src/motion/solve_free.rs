@@ -78,7 +78,6 @@ impl BearingParts {
         let blocks = self.ball_blocks();
         let policy = Policy {
             blocks: &blocks,
-            keeps_factors: true,
             ends_at_floor: true,
             ..policy(scale, Some(&scales), costs)
         };

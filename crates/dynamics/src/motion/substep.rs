@@ -20,7 +20,7 @@ use super::state::{MotionState, StepReport};
 use crate::bearing::BearingParts;
 use crate::costs::{BLOCK_SOLVE, LOADS, NEWTON, PATCHES, UPDATE};
 use crate::error::DynamicsError;
-use crate::system::newton::{KeptTangent, Policy};
+use crate::system::newton::KeptTangent;
 
 /// Rounds for the places of the patches before a step counts as failed.
 const MAX_PLACE_ROUNDS: usize = 20;
@@ -159,13 +159,10 @@ impl Motion<'_> {
         })
     }
 
-    /// Newton on the part. Steps are short, so that one tangent serves all iterations as a rule. In a round of a
-    /// turning frame it starts from the solution of the round before, with its tangent.
+    /// Newton on the part. In a round of a turning frame it starts from the solution of the round before, with its
+    /// tangent.
     fn solve_again(&self, part: &mut StepPart<'_>) -> Result<StepSolution, DynamicsError> {
-        let policy = Policy {
-            keeps_factors: true,
-            ..policy(part.scale, None, &self.costs)
-        };
+        let policy = policy(part.scale, None, &self.costs);
         let before = part.before.take();
         part.parts.solve_step_from(before, &policy, &mut part.tangent)
     }
