@@ -69,7 +69,12 @@ impl StepSolution {
 }
 
 impl BearingParts {
-    /// Solves the part by a policy, from given unknowns or from the guess of the system, with a tangent that is kept.
+    /// Solves the part; `scale` is the largest force that acts at its start, N.
+    pub fn solve_step(&self, scale: f64, costs: &SharedLaps) -> Result<StepSolution, DynamicsError> {
+        self.solve_step_from(None, &policy(scale, None, costs), &mut None)
+    }
+
+    /// The same by a policy, from given unknowns or from the guess of the system, with a tangent that is kept.
     pub(super) fn solve_step_from(
         &self,
         start: Option<Vec<f64>>,
@@ -107,8 +112,7 @@ impl BearingParts {
     }
 }
 
-/// What a part asks of Newton; `scale` is the largest force that acts at its start, N. Steps are short, so that one
-/// tangent serves all iterations as a rule.
+/// What a part, short as a rule, asks of Newton; `scale` is the largest force that acts at its start, N.
 pub(super) fn policy<'p>(scale: f64, scales: Option<&'p [f64]>, costs: &'p SharedLaps) -> Policy<'p> {
     Policy {
         most_iterations: MOST_ITERATIONS,
