@@ -2,6 +2,7 @@
 
 use super::frame_inertia::FrameInertia;
 use super::inertia::Inertia;
+use super::large_tilt::LargeTilt;
 use super::tilted_loads::TiltedLoads;
 use crate::system::{Interval, Lumped};
 
@@ -29,6 +30,8 @@ pub struct FlatBody<const N: usize> {
     pub imposed: [Option<f64>; N],
     /// Of a shaft, the inertia of a ring that turns with it.
     pub turning: Option<Box<FrameInertia>>,
+    /// Of a shaft that may tilt, its inertia and that of what is on it beyond small tilts.
+    pub far: Option<Box<LargeTilt>>,
     /// Of a shaft that may tilt, loads whose moments change with that.
     pub tilted: Option<TiltedLoads>,
     start: [f64; N],
@@ -43,6 +46,7 @@ impl<const N: usize> FlatBody<N> {
             dofs,
             imposed,
             turning: None,
+            far: None,
             tilted: None,
         }
     }
@@ -54,8 +58,10 @@ impl<const N: usize> FlatBody<N> {
         for (i, (force, dof)) in forces.iter_mut().zip(&self.dofs).enumerate() {
             *force = dof.residual(interval, end[i])[0];
         }
-        if let Some(turning) = &self.turning {
-            let more = turning.forces(five(end));
+        let end_five = five(end);
+        let turning = self.turning.as_ref().map(|of| of.forces(end_five));
+        let far = self.far.as_ref().map(|of| of.forces(end_five));
+        for more in [turning, far].into_iter().flatten() {
             forces
                 .iter_mut()
                 .zip(more)
@@ -128,8 +134,9 @@ impl<const N: usize> Lumped for FlatBody<N> {
         for (k, i) in self.free().enumerate() {
             tangent[(n + 1) * k] = self.dofs[i].residual(interval, self.start[i])[1];
         }
-        if let Some(turning) = &self.turning {
-            let slopes = turning.slopes();
+        let turning = self.turning.as_ref().map(|of| of.slopes());
+        let far = self.far.as_ref().map(|of| of.slopes());
+        for slopes in [turning, far].into_iter().flatten() {
             for (row, i) in self.free().enumerate() {
                 for (column, k) in self.free().enumerate() {
                     tangent[n * row + column] += slopes[k][i];

@@ -9,8 +9,9 @@
 //! ```
 //!
 //! with J a = (-a_y, a_x), linear in the tilts: the inertia in space of a free rotor (e.g. Genta, Dynamics of Rotating
-//! Systems, ch. 2), seen from its frame. The step of the ring takes the second derivatives alone, so that a shaft at
-//! rest in space would be pulled outwards; the rest acts on the shaft here ([`StepTakes::Still`]).
+//! Systems, ch. 2), seen from its frame ([`super::LargeTilt`] has the rest). The step of the ring takes the second
+//! derivatives alone, so that a shaft at rest in space would be pulled outwards; what is left acts on the shaft here
+//! ([`StepTakes::Still`]).
 //!
 //! Where the effect `frame_rotation` gives the whole ring the inertia of its frame, it does so on linear displacements:
 //! the ring lacks W^2 I_p t / 2 - W' I_p J t / 2 of the moment, because a tilt moves nodes towards the axis to second

@@ -5,6 +5,7 @@ mod flat;
 mod frame_inertia;
 mod free_ball;
 mod inertia;
+mod large_tilt;
 mod tilted_loads;
 
 pub use cage::CageBody;
@@ -12,6 +13,7 @@ pub use flat::{AXES, FlatBody, Name};
 pub use frame_inertia::{FrameInertia, StepTakes};
 pub use free_ball::FreeBall;
 pub use inertia::Inertia;
+pub use large_tilt::LargeTilt;
 pub use tilted_loads::TiltedLoads;
 
 /// Coordinates at the start of a step where they count from there.

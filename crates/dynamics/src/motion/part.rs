@@ -11,7 +11,7 @@ use super::span::PartSpan;
 use super::state::MotionState;
 use super::state::PatchPlace;
 use crate::bearing::{BearingParts, ContactList, SeatStep};
-use crate::bodies::{FlatBody, FrameInertia, Inertia, Name, StepTakes};
+use crate::bodies::{FlatBody, FrameInertia, Inertia, LargeTilt, Name, StepTakes};
 use crate::effects::{Loads, Now};
 use crate::error::DynamicsError;
 use crate::interactions::discrete_gradient::MeanForce;
@@ -184,7 +184,22 @@ impl Motion<'_> {
         let imposed = [0, 1, 2, 3, 4].map(|i| self.model.prescribed(i, span.at(1.0)));
         let mut shaft = FlatBody::new(Name::Shaft, dofs, imposed);
         shaft.turning = self.frame_inertia(state, span).map(Box::new);
+        shaft.far = self.large_tilt(state, span).map(Box::new);
         shaft
+    }
+
+    /// Inertia of what moves with the shaft beyond that of small tilts.
+    fn large_tilt(&self, state: &MotionState, span: PartSpan) -> Option<LargeTilt> {
+        Some(LargeTilt {
+            inertia: self.tilting?,
+            start: [state.shaft, state.shaft_velocity, state.shaft_acceleration],
+            remembers: self.model.shaft_masses().map(|mass| mass > 0.0),
+            scheme: StepScheme {
+                integrator: self.settings.integrator,
+                dt: span.dt,
+            },
+            speeds: [0.0, 1.0].map(|share| self.settings.speeds.inner.at(span.at(share))),
+        })
     }
 
     /// Rigid inertia of what turns with the shaft that neither its dofs nor the step of the ring take.

@@ -27,6 +27,7 @@ use crate::effects::Loads;
 use crate::error::DynamicsError;
 use crate::model::{ContactMode, Model, ShaftDof};
 use crate::raceway::Raceway;
+use crate::whirl::shaft_inertia;
 
 /// Factors of both rings at one step size.
 pub(super) type Rung = [Option<Arc<dyn StepFactor>>; 2];
@@ -54,6 +55,8 @@ pub struct Motion<'a> {
     /// Rigid inertia of a flexible inner ring, zero of a rigid one, where ring or shaft turns and may move across its
     /// axis.
     pub(super) turning: Option<RigidInertia>,
+    /// Rigid inertia of all that moves with the shaft, where that may tilt.
+    pub(super) tilting: Option<RigidInertia>,
     /// Moment that the stress of the inner ring at unit speed holds against a tilt, N m s^2.
     pub(super) tilt_by_stress: f64,
     /// Tells this motion from others.
@@ -94,6 +97,12 @@ impl<'a> Motion<'a> {
             Frame::Stiffened => inner.as_ref().map_or(0.0, |ring| ring.body.tilt_by_stress()),
             Frame::Still | Frame::Turning => 0.0,
         };
+        let tilting = tilts(model).then(|| {
+            let ring = inner.as_ref().filter(|_| is_on_shaft(model));
+            let ring = ring.map(|ring| ring.body.rigid_inertia()).unwrap_or_default();
+            let carried = model.carried_inertia().unwrap_or_default();
+            shaft_inertia(model).with(ring).with(carried)
+        });
         let kinematics = Kinematics::new(&model.geometry, settings.slip);
         let rungs = (0..=settings.ladder.halvings).map(|_| OnceLock::new()).collect();
         let motion = Motion {
@@ -101,6 +110,7 @@ impl<'a> Motion<'a> {
             kinematics,
             rings: [inner, outer],
             turning,
+            tilting,
             tilt_by_stress,
             settings,
             token: Arc::new(()),
@@ -315,11 +325,22 @@ fn moving_ring(
 /// Whether inertia turns with a shaft that may move across its axis or tilt.
 fn wobbles(model: &Model, speeds: &RingSpeeds) -> bool {
     let moves = |dof: usize| model.shaft[dof] != ShaftDof::Prescribed(0.0);
-    let is_held = model
-        .ring(Side::Inner)
-        .is_some_and(|ring| ring.hold != Hold::Free);
-    let has_inertia = is_held || model.shaft_inertia.polar > 0.0;
+    let has_inertia = is_on_shaft(model) || model.shaft_inertia.polar > 0.0;
     has_inertia && !speeds.inner.is_zero() && [0, 1, 3, 4].into_iter().any(moves)
+}
+
+/// Whether the shaft may tilt.
+fn tilts(model: &Model) -> bool {
+    [3, 4]
+        .into_iter()
+        .any(|dof: usize| model.shaft[dof] != ShaftDof::Prescribed(0.0))
+}
+
+/// Whether an elastic inner ring moves with the shaft.
+fn is_on_shaft(model: &Model) -> bool {
+    model
+        .ring(Side::Inner)
+        .is_some_and(|ring| ring.hold != Hold::Free)
 }
 
 /// Refuses what kinematic balls know and free ones do not.
