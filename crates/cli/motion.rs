@@ -52,7 +52,7 @@ pub fn run(
     }))?;
     let remarks = Remarks::on(scene, &model, std::mem::take(&mut survey.doubts))?;
     let read = start.elapsed().as_secs_f64();
-    let settled = settle(&model, dynamic, &progress)?;
+    let settled = settle(scene, &model, dynamic, &progress)?;
     let mut laps = settled.timing.clone();
     progress.stage("factoring the effective matrices");
     let motion = factored(&model, scene, dynamic, &mut laps)?;

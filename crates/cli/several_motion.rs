@@ -7,8 +7,8 @@
 use std::path::Path;
 use std::time::Instant;
 
-use assembly::motion::AssemblyCache;
-use assembly::{Assembly, AssemblyMotion, AssemblySolver, AssemblyState};
+use assembly::motion::{AssemblyCache, AssemblyRates};
+use assembly::{Assembly, AssemblyMotion, AssemblySolution, AssemblySolver, AssemblyState};
 use comm::print;
 use dynamics::costs::{EFFECTS, FACTOR};
 use results::failure::{Failure, agree};
@@ -23,7 +23,7 @@ use results::snapshot::Snapshot;
 use results::stop::Stop;
 use results::summary::{Findings, READ, TOTAL};
 use results::watch::Watch;
-use scene::{Dynamic, Scene, SeveralScene};
+use scene::{Dynamic, Scene, SeveralScene, Start};
 use timer::{Laps, Stopwatch};
 
 use crate::instants::{self, Due, OverInstants, WrittenSteps};
@@ -32,6 +32,7 @@ use crate::options::Limits;
 use crate::progress::Progress;
 use crate::several::{self, make_folder, require_same_list, say_types, solving, warnings_at};
 use crate::several_files::{close_bearing, create_files, resume_all, resume_tables};
+use crate::several_instant::rolling_start;
 use crate::several_ledger::LedgerWatch;
 use crate::several_read::{ReadList, read_list, require_memory_of_all};
 use crate::several_ready::{ready, require_space, say_left_out};
@@ -58,18 +59,13 @@ pub fn run(
     }))?;
     let mut laps = Laps::default();
     laps.add(READ, start.elapsed().as_secs_f64());
-    progress.stage("static start");
-    let mut solver = AssemblySolver::new(&assembly).map_err(solving)?;
-    say_types(&solver, &assembly, &progress);
-    let solution = solver.solve(&mut assembly, None).map_err(solving)?;
+    let (solution, rates) = settle((scene, dynamic), &mut assembly, &progress, &mut laps)?;
     warnings.extend(warnings_at("", &assembly, &solution));
-    laps.merge(&solver.laps());
-    drop(solver);
     assembly.release();
     progress.stage("factoring the effective matrices");
     let motion = laps.time(FACTOR, || ready(scene, dynamic, &assembly))?;
     say_left_out(&motion, &assembly, &progress);
-    let state = motion.start(&solution);
+    let state = motion.start_with(&solution, rates.as_ref());
     let placed = scene.bearings.iter().zip(&solution.bearings);
     let placed = placed.map(|(bearing, found)| several::placed(&bearing.scene, found));
     let placed = agree(placed.collect::<Result<Vec<Scene>, Failure>>())?;
@@ -97,6 +93,25 @@ pub fn run(
     };
     instants::record(&mut march, RestartState::Stored)?;
     march.finish_run(progress, limits, warnings, start)
+}
+
+/// Equilibrium at t = 0, and the velocities with which the motion starts if they are asked for.
+fn settle(
+    (scene, dynamic): (&SeveralScene, &Dynamic),
+    assembly: &mut Assembly,
+    progress: &Progress,
+    laps: &mut Laps,
+) -> Result<(AssemblySolution, Option<AssemblyRates>), Failure> {
+    progress.stage("static start");
+    let mut solver = AssemblySolver::new(assembly).map_err(solving)?;
+    say_types(&solver, assembly, progress);
+    let solution = solver.solve(assembly, None).map_err(solving)?;
+    let start = match dynamic.start {
+        Start::Rolling => rolling_start((scene, assembly), &mut solver, solution).map_err(solving)?,
+        Start::Static | Start::Given { .. } => (solution, None),
+    };
+    laps.merge(&solver.laps());
+    Ok(start)
 }
 
 /// Goes on with a motion whose bearings and step have been read.

@@ -1,10 +1,11 @@
-//! What comes before the first step of a motion: static equilibrium, or a state that the scene gives.
+//! What comes before the first step of a motion: static equilibrium, at rest or rolling, or a state that the scene
+//! gives.
 
 use contact::Side;
-use dynamics::motion::{Motion, MotionState};
+use dynamics::motion::{EquilibriumRates, Motion, MotionState};
 use dynamics::{Model, RingMemory, StaticSolution, StaticSolver};
 use results::failure::Failure;
-use scene::{Dynamic, Start};
+use scene::{Dynamic, Scene, Start, rolling};
 use timer::Laps;
 
 use crate::progress::Progress;
@@ -13,6 +14,7 @@ use crate::progress::Progress;
 #[derive(Default)]
 pub struct Settled {
     equilibrium: Option<StaticSolution>,
+    rates: Option<EquilibriumRates>,
     /// Forecast of the memory of both rings.
     pub forecast: [Option<RingMemory>; 2],
     /// Wall time of the static solution.
@@ -20,16 +22,27 @@ pub struct Settled {
 }
 
 /// Static equilibrium at t = 0, if the motion starts from it. Its factors are not kept: the motion has its own.
-pub fn settle(model: &Model, dynamic: &Dynamic, progress: &Progress) -> Result<Settled, Failure> {
+pub fn settle(
+    scene: &Scene,
+    model: &Model,
+    dynamic: &Dynamic,
+    progress: &Progress,
+) -> Result<Settled, Failure> {
     dynamics::motion::check_supported(model).map_err(Failure::solving)?;
-    if dynamic.start != Start::Static {
+    if let Start::Given { .. } = dynamic.start {
         return Ok(Settled::default());
     }
     progress.stage("static start");
     let mut statics = StaticSolver::new(model).map_err(Failure::solving)?;
     let equilibrium = statics.solve(model, None).map_err(Failure::solving)?;
+    let rates = rolling(scene)
+        .filter(|_| dynamic.start == Start::Rolling)
+        .map(|rolling| EquilibriumRates::find(&mut statics, (model, &rolling), &equilibrium))
+        .transpose()
+        .map_err(Failure::solving)?;
     Ok(Settled {
         equilibrium: Some(equilibrium),
+        rates,
         forecast: Side::BOTH.map(|side| statics.ring(side).map(|r| r.solver.memory)),
         timing: statics.timing,
     })
@@ -39,7 +52,7 @@ impl Settled {
     /// The state at t = 0.
     pub fn first_state(&self, motion: &Motion<'_>, dynamic: &Dynamic) -> Result<MotionState, Failure> {
         let state = match (&self.equilibrium, dynamic.start) {
-            (Some(equilibrium), _) => motion.start(equilibrium),
+            (Some(equilibrium), _) => motion.start_with(equilibrium, self.rates.as_ref()),
             (
                 None,
                 Start::Given {
@@ -47,7 +60,7 @@ impl Settled {
                     velocity,
                 },
             ) => motion.rest(displacement, velocity),
-            (None, Start::Static) => unreachable!("a static start has its equilibrium"),
+            (None, Start::Static | Start::Rolling) => unreachable!("a static start has its equilibrium"),
         };
         motion.with_accelerations(state).map_err(Failure::solving)
     }

@@ -31,7 +31,9 @@ use comm::Communicator;
 use dynamics::effects::Now;
 use dynamics::kinematics::Speed;
 use dynamics::motion::held::{HeldAnswer, HeldPart, Holding};
-use dynamics::motion::{Integrator, Motion, MotionSettings, MotionState, PartSpan, StepCache, StepReport};
+use dynamics::motion::{
+    EquilibriumRates, Integrator, Motion, MotionSettings, MotionState, PartSpan, StepCache, StepReport,
+};
 use dynamics::stiffness::N_SHAFT;
 use dynamics::{DynamicsError, ShaftDof};
 
@@ -50,6 +52,29 @@ const MAX_ROUNDS: usize = 60;
 
 /// Loads on the dofs of the shaft, N and N m: their means over an interval about an instant.
 pub type LoadAt<'a> = dyn Fn(&Now<'_>) -> Result<Vec<f64>, AssemblyError> + Sync + 'a;
+
+/// Velocities at which equilibria of bearings that roll follow each other.
+#[derive(Clone, Debug, PartialEq)]
+pub struct AssemblyRates {
+    /// Of the shaft's dofs, m/s and rad/s.
+    pub shaft: Vec<f64>,
+    /// Of every bearing, in its own frame.
+    pub bearings: Vec<EquilibriumRates>,
+}
+
+impl AssemblyRates {
+    /// From equilibria with a time between them, s.
+    pub fn between([before, after]: [&AssemblySolution; 2], time: f64) -> AssemblyRates {
+        let [from, to] = [before, after].map(|solution| &solution.shaft.displacements);
+        let bearings = before.bearings.iter().zip(&after.bearings);
+        AssemblyRates {
+            shaft: from.iter().zip(to).map(|(from, to)| (to - from) / time).collect(),
+            bearings: bearings
+                .map(|(before, after)| EquilibriumRates::between([before, after], time))
+                .collect(),
+        }
+    }
+}
 
 /// Bearings and shaft ready to move.
 pub struct AssemblyMotion<'a> {
@@ -132,14 +157,20 @@ impl<'a> AssemblyMotion<'a> {
 
     /// The state at an equilibrium, at rest but for the turning of the rings.
     pub fn start(&self, solution: &AssemblySolution) -> AssemblyState {
-        let bearings = self.bearings.iter().zip(&solution.bearings);
+        self.start_with(solution, None)
+    }
+
+    /// The same, with the velocities of shaft and balls if they are given.
+    pub fn start_with(&self, solution: &AssemblySolution, rates: Option<&AssemblyRates>) -> AssemblyState {
+        let bearings = self.bearings.iter().zip(&solution.bearings).enumerate();
         let shaft = solution.shaft.displacements.clone();
+        let still = vec![0.0; shaft.len()];
         let mut state = AssemblyState {
             step: 0,
             bearings: bearings
-                .map(|(motion, solution)| motion.start(solution))
+                .map(|(i, (motion, solution))| motion.start_with(solution, rates.map(|r| &r.bearings[i])))
                 .collect(),
-            velocity: vec![0.0; shaft.len()],
+            velocity: rates.map_or(still, |rates| rates.shaft.clone()),
             loads: solution.bearings.iter().map(|b| b.shaft_reaction).collect(),
             shaft,
             ledger: ShaftLedger::default(),

@@ -46,7 +46,11 @@ impl Motion<'_> {
             let rolls = steady.and_then(|steady| steady.balls.get(ball));
             let [orbit, turning @ ..] = rolls.map_or_else(|| self.rolls(out, angles), SteadyRolling::rates);
             free.places.push([out * cos, out * sin, axial]);
-            free.velocities.push([-orbit * out * sin, orbit * out * cos, 0.0]);
+            let along = orbit * out;
+            free.velocities.push(match state.ball_velocities[ball] {
+                still if still == Meridian::default() => [-along * sin, along * cos, 0.0],
+                Meridian { radial, axial } => [radial * cos - along * sin, radial * sin + along * cos, axial],
+            });
             free.turnings.push([
                 turning[0] * cos - turning[1] * sin,
                 turning[0] * sin + turning[1] * cos,

@@ -7,6 +7,7 @@ use ring::{ElasticBody, Integrator, RingState};
 use super::cache::StepCache;
 use super::free::friction_at_start;
 use super::ledger::Ledger;
+use super::rolling_start::EquilibriumRates;
 use super::run::Motion;
 use super::state::PatchPlace;
 use super::state::{Ladder, MotionSettings, MotionState};
@@ -18,10 +19,19 @@ use crate::solution::StaticSolution;
 impl Motion<'_> {
     /// The state at static equilibrium, at rest but for the turning of the rings and what drives the shaft.
     pub fn start(&self, solution: &StaticSolution) -> MotionState {
+        self.start_with(solution, None)
+    }
+
+    /// The same, with the velocities of shaft and balls if they are given.
+    pub fn start_with(&self, solution: &StaticSolution, rates: Option<&EquilibriumRates>) -> MotionState {
         let model = self.model;
         let q = solution.displacements.shaft;
+        let n = model.geometry.n_balls;
+        let balls = rates.map_or_else(|| vec![Meridian::default(); n], |rates| rates.balls.clone());
         // A driven shaft moves already.
-        let velocity = [0, 1, 2, 3, 4].map(|dof| model.prescribed_rate(dof, 0.0).unwrap_or(0.0));
+        let free = |dof: usize| rates.map_or(0.0, |rates| rates.shaft[dof]);
+        let velocity =
+            [0, 1, 2, 3, 4].map(|dof| model.prescribed_rate(dof, 0.0).unwrap_or_else(|| free(dof)));
         let seat = [0.0, 0.0, solution.displacements.seat, 0.0, 0.0];
         let ring = |side: Side| {
             let moving = self.rings[side.index()].as_ref()?;
@@ -44,13 +54,13 @@ impl Motion<'_> {
             rung: 0,
             rings: Side::BOTH.map(ring),
             balls: solution.displacements.balls.clone(),
-            ball_velocities: vec![Meridian::default(); model.geometry.n_balls],
-            ball_accelerations: vec![Meridian::default(); model.geometry.n_balls],
+            ball_velocities: balls,
+            ball_accelerations: vec![Meridian::default(); n],
             shaft: q,
             shaft_velocity: velocity,
             shaft_acceleration: [0.0; 5],
             seat: model.seat().map(|_| [solution.displacements.seat, 0.0, 0.0]),
-            trend: vec![Meridian::default(); 3 * model.geometry.n_balls],
+            trend: vec![Meridian::default(); 3 * n],
             forces: on_rings(&contacts),
             places: [(); 3].map(|()| places.clone()),
             angles: contacts.iter().map(|c| c.angle).collect(),

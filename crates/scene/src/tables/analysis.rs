@@ -42,7 +42,8 @@ impl RawScene {
             return sweep.check(document, problems).map(Analysis::Sweep);
         }
         if let Some(dynamic) = &self.dynamic {
-            return dynamic.check(shaft, problems).map(Analysis::Dynamic);
+            let known = (shaft, self.speed.is_some());
+            return dynamic.check(known, problems).map(Analysis::Dynamic);
         }
         if let Some(quasi) = &self.quasi_static {
             return quasi.check(problems).map(Analysis::QuasiStatic);

@@ -119,7 +119,11 @@ impl RawDynamic {
     pub fn refuse_in_list(&self, problems: &mut Problems) {
         let given = [
             ("adaptive", self.adaptive.is_some(), "its steps are equal"),
-            ("start", self.start.is_some(), "it starts from its equilibrium"),
+            (
+                "start",
+                self.start.as_ref().is_some_and(|start| !start.is_rolling()),
+                "it starts from its equilibrium, at rest or with [dynamic.start.rolling]",
+            ),
             (
                 "integrator",
                 !self.conserves(),
@@ -135,7 +139,7 @@ impl RawDynamic {
 
     /// Checks ranges, that the step fits the duration, and that the integrator has the numbers it needs; `None` when
     /// there are problems.
-    pub fn check(&self, shaft: &Shaft, problems: &mut Problems) -> Option<Dynamic> {
+    pub fn check(&self, (shaft, has_speed): (&Shaft, bool), problems: &mut Problems) -> Option<Dynamic> {
         let before = problems.len();
         let n_steps = whole_steps("dynamic", &self.duration, &self.step, problems);
         let output_every = output_every("dynamic", self.output_every, problems);
@@ -158,6 +162,13 @@ impl RawDynamic {
             .start
             .as_ref()
             .map_or(Start::Static, |s| s.check(shaft, problems));
+        if start == Start::Rolling && !has_speed {
+            problems.add(
+                "[dynamic.start.rolling] starts with balls that go round, but nothing turns; add [speed] with inner = \
+                 \"1800 rpm\" to a scene that has none, or remove it"
+                    .to_string(),
+            );
+        }
         let ledger_tolerance = self.ledger_tolerance.unwrap_or(DEFAULT_LEDGER_TOLERANCE);
         problems.require(
             (1e-14..=1.0).contains(&ledger_tolerance),

@@ -10,6 +10,7 @@ use super::shaft::{Shaft, ShaftMotion};
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields, expecting = "the table [dynamic.start]")]
 pub struct RawStart {
+    rolling: Option<RawRolling>,
     free: Option<RawFree>,
     given: Option<RawGiven>,
 }
@@ -18,6 +19,11 @@ pub struct RawStart {
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields, expecting = "the empty table [dynamic.start.free]")]
 struct RawFree {}
+
+/// As typed: the table has no keys.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields, expecting = "the empty table [dynamic.start.rolling]")]
+struct RawRolling {}
 
 /// As typed; what is not given is zero.
 #[derive(Debug, Default, Deserialize)]
@@ -41,6 +47,8 @@ pub enum Start {
     /// Static equilibrium under the loads and the speed at t = 0.
     #[default]
     Static,
+    /// The same, with the velocities at which equilibria follow each other while the bearing rolls.
+    Rolling,
     /// Undeformed bodies; the shaft with the inner ring at this displacement and velocity, m, rad, m/s, rad/s; balls
     /// at their just-touching position, at rest.
     Given {
@@ -52,23 +60,39 @@ pub enum Start {
 }
 
 impl RawStart {
+    /// Whether it is an equilibrium of a bearing that rolls.
+    pub fn is_rolling(&self) -> bool {
+        self.rolling.is_some()
+    }
+
     /// Checks that at most one way to start is there, and that what is given is free to move.
     pub fn check(&self, shaft: &Shaft, problems: &mut Problems) -> Start {
         let undeformed = Start::Given {
             displacement: [0.0; 5],
             velocity: [0.0; 5],
         };
-        match (&self.free, &self.given) {
-            (Some(_), Some(_)) => {
-                problems.add(
-                    "[dynamic.start] has free and given; expected one of them, or none for static equilibrium"
-                        .to_string(),
-                );
-                Start::Static
-            }
-            (Some(_), None) => undeformed,
-            (None, Some(given)) => given.check(shaft, problems),
-            (None, None) => Start::Static,
+        let tables = [
+            ("rolling", self.rolling.is_some()),
+            ("free", self.free.is_some()),
+            ("given", self.given.is_some()),
+        ];
+        let named: Vec<&str> = tables
+            .iter()
+            .filter(|(_, has)| *has)
+            .map(|(name, _)| *name)
+            .collect();
+        if named.len() > 1 {
+            problems.add(format!(
+                "[dynamic.start] has {}; expected one of them, or none for static equilibrium",
+                named.join(" and ")
+            ));
+            return Start::Static;
+        }
+        match (&self.rolling, &self.free, &self.given) {
+            (Some(RawRolling {}), ..) => Start::Rolling,
+            (_, Some(RawFree {}), _) => undeformed,
+            (.., Some(given)) => given.check(shaft, problems),
+            (None, None, None) => Start::Static,
         }
     }
 }

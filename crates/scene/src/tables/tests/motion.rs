@@ -86,6 +86,24 @@ fn a_motion_needs_only_duration_and_step() {
     assert!(effects.names().is_empty(), "{:?}", effects.names());
 }
 
+/// If this failed, balls that go round at the start would be asked for in vain, or where nothing turns.
+#[test]
+fn a_motion_starts_rolling_where_something_turns() {
+    let (turning, _) = DYNAMIC.split_once("[dynamic.start.given]").unwrap();
+    let rolling = format!("{turning}[dynamic.start.rolling]\n");
+    assert_eq!(dynamic_of(&rolling).start, Start::Rolling);
+    let message = message_of(&format!("{rolling}[dynamic.start.free]\n"), &[]);
+    let expected =
+        "[dynamic.start] has rolling and free; expected one of them, or none for static equilibrium";
+    assert!(message.contains(expected), "{message}");
+    let (head, _) = DYNAMIC.split_once("[speed]").unwrap();
+    let standing =
+        format!("{head}[dynamic]\nduration = \"1 ms\"\nstep = \"1 ms\"\n[dynamic.start.rolling]\n");
+    let message = message_of(&standing, &[]);
+    let expected = "[dynamic.start.rolling] starts with balls that go round, but nothing turns; add [speed]";
+    assert!(message.contains(expected), "{message}");
+}
+
 /// If this failed, the speeds of balls would follow other angles than asked for, or be asked for in vain.
 #[test]
 fn ball_speeds_are_for_effects_of_turning_balls() {

@@ -363,7 +363,8 @@ fn bad_lists_are_refused_with_advice() {
         ),
         (
             moving(&beam, "[dynamic.start.free]\n"),
-            "dynamic.start is not for a list of bearings yet: it starts from its equilibrium",
+            "dynamic.start is not for a list of bearings yet: it starts from its equilibrium, at rest or with \
+             [dynamic.start.rolling]",
         ),
         (
             moving(&beam, "integrator = \"chung_hulbert\"\nrho = 0.8\n"),
