@@ -37,6 +37,11 @@ fn a_list_of_one_elastic_bearing_gives_the_same_bits() {
             "motion",
             "[dynamic]\nduration = \"0.2 ms\"\nstep = \"20 us\"\n\n[speed]\ninner = \"12000 rpm\"",
         ),
+        (
+            "rolling",
+            "[dynamic]\nduration = \"0.1 ms\"\nstep = \"20 us\"\n\n[dynamic.start.rolling]\n\n[speed]\n\
+             inner = \"12000 rpm\"",
+        ),
     ];
     for (name, analysis) in analyses {
         let [kind, rest] = parts();
@@ -54,6 +59,32 @@ fn a_list_of_one_elastic_bearing_gives_the_same_bits() {
             assert!(same, "{name}: {table}");
         }
     }
+}
+
+/// Wrong: the balls of a list would start at rest where they are to start on their orbits, or go round where not.
+#[test]
+fn a_list_starts_rolling_where_it_is_asked_to() {
+    let motion = "[dynamic]\nduration = \"20 us\"\nstep = \"10 us\"\n\n[speed]\ninner = \"24000 rpm\"\n";
+    let dir = pair(&format!("{motion}\n[dynamic.start.rolling]\n"));
+    dir.write(
+        "still.toml",
+        dir.text("pair.toml").replace("[dynamic.start.rolling]", ""),
+    );
+    let kinetic = ["pair", "still"].map(|name| {
+        succeeds(&dir, &["run", &format!("{name}.toml"), "--out", name]);
+        ["front", "rear"].map(|bearing| {
+            let text = dir.text(&format!("{name}/{bearing}/energy.csv"));
+            let rows: Vec<Vec<&str>> = text.lines().map(|line| line.split(',').collect()).collect();
+            let column = rows[0]
+                .iter()
+                .position(|name| *name == "kinetic_balls_j")
+                .unwrap();
+            rows[1][column].parse::<f64>().unwrap()
+        })
+    });
+    let [rolling, still] = kinetic;
+    assert_eq!(still, [0.0, 0.0]);
+    assert!(rolling.iter().all(|energy| *energy > 1e-12), "{rolling:?}");
 }
 
 /// Wrong: a floating bearing beside a pair would be pressed by the offset of the pair, or the pair by another force.
