@@ -53,6 +53,21 @@ fn assert_refused(dir: &Dir, arguments: &[&str], parts: &[&str]) {
 
 const MOVING: &str = "[dynamic]\nduration = \"1 ms\"\nstep = \"20 us\"\noutput_every = 50";
 
+/// Wrong: a mass beside the axis point would lack its coupling in silence, or the advice come where nothing tilts.
+#[test]
+fn a_mass_beside_the_axis_point_is_told() {
+    let said = |sets: &[&str]| turning("check", MOVING, sets).1.stdout;
+    let free = ["shaft.tilt_x=\"free\"", "shaft.mass=\"1 kg\""];
+    let part =
+        "advice   shaft.mass has its inertia at the axis point, though its weight acts 30.0 mm beside it";
+    let beside = said(&[free[0], free[1], "shaft.load_point=\"30 mm\""]);
+    assert!(beside.contains(part), "{beside}");
+    let at = said(&free);
+    assert!(!at.contains("though its weight acts"), "{at}");
+    let locked = said(&["shaft.mass=\"1 kg\"", "shaft.load_point=\"30 mm\""]);
+    assert!(!locked.contains("though its weight acts"), "{locked}");
+}
+
 /// Wrong: 1.5 turns of the bearing in a step would draw no remark: balls change places unseen, and every number is
 /// wrong. Balls of the 7010C pass its inner raceway 306 times per second at 1800 rpm.
 #[test]

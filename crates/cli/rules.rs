@@ -43,6 +43,7 @@ pub fn advice(scene: &Scene, model: &Model) -> Result<Vec<String>, Failure> {
     zero_of_the_shaft(scene, model, &mut lines);
     lines.extend(free_without_thrust(scene, &case));
     lines.extend(rigid_ring_without_inertia(scene, &case));
+    lines.extend(mass_beside_load_point(scene));
     lines.extend(periodic_gain::advice(scene, model));
     lines.extend(orders_of_seats(scene, model));
     Ok(lines)
@@ -83,6 +84,23 @@ fn free_without_thrust(scene: &Scene, case: &Case<'_>) -> Option<String> {
          force drives the rings apart until contact angles are about 0; an angular contact bearing needs \
          [effects.axial_force], [effects.spring_preload] or a shaft.z that is held",
         angle.to_degrees()
+    ))
+}
+
+/// The mass of a shaft that tilts has its inertia at the axis point, wherever its weight acts.
+fn mass_beside_load_point(scene: &Scene) -> Option<String> {
+    let shaft = &scene.shaft;
+    let has_inertia = matches!(scene.analysis, Analysis::Dynamic(_) | Analysis::Modes(_));
+    let tilts = [shaft.tilt_x, shaft.tilt_y].contains(&ShaftMotion::Free);
+    let apart = shaft.load_point;
+    if !has_inertia || !tilts || shaft.mass == 0.0 || apart == 0.0 {
+        return None;
+    }
+    Some(format!(
+        "shaft.mass has its inertia at the axis point, though its weight acts {:.1} mm beside it, at \
+         shaft.load_point: what couples a tilt with a displacement of the mass is left out; where the mass stands \
+         there, a list of one bearing with a beam or a body as shaft has it",
+        1e3 * apart
     ))
 }
 
