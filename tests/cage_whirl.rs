@@ -1,8 +1,8 @@
 //! When a cage that its balls guide whirls: the statements of Nogi, Maniwa and Matsuoka, J. Tribol. 140 (2018) 011101,
 //! in the conditions of docs/traction.md. Minutes; `scripts/test-slow cage_whirl` runs them, `scripts/cage-whirl` more.
 
-use crate::housing::delivered;
 use crate::util::Dir;
+use crate::util::delivered::delivered;
 use crate::util::tables::Table;
 
 /// Force in a pocket above which a cage whirls, N: calm ones stay below 5, whirls come to hundreds.

@@ -5,9 +5,10 @@ use std::collections::BTreeSet;
 use checkpoint::{read_mesh, read_step, step_file_name};
 use mesh::{MshFormat, Overwrite, read_body_msh, write_msh};
 
-use crate::housing::{assert_moves_and_goes_on, delivered};
+use crate::housing::assert_moves_and_goes_on;
 use crate::shared_housing::{in_motion, without_analysis};
 use crate::util::Dir;
+use crate::util::delivered::{coarse, delivered};
 use crate::util::lockstep::{assert_same_run, copy};
 use crate::util::tables::{Table, number, summary};
 
@@ -38,7 +39,7 @@ fn of_bearings(dir: &Dir, out: &str, name: &str) -> Vec<f64> {
 /// whole of it, or a user would not find the seats.
 #[test]
 fn a_spindle_of_finite_elements_carries_its_loads_and_its_weight() {
-    let dir = delivered();
+    let dir = coarse(&[SCENE]);
     let run = dir.raceway(&[&["run", SCENE, "--out", "found"][..], &FEW].concat());
     assert_eq!(run.code, Some(0), "{}", run.stderr);
     let sum = |name: &str| of_bearings(&dir, "found", name).iter().sum::<f64>();
@@ -81,7 +82,7 @@ fn a_spindle_of_finite_elements_carries_its_loads_and_its_weight() {
 /// which they sit; few functions, so to a few per cent.
 #[test]
 fn the_line_of_a_mode_goes_through_the_sections_of_an_elastic_shaft() {
-    let dir = delivered();
+    let dir = coarse(&[SCENE]);
     let scene = without_analysis(&dir, SCENE);
     dir.write("modes.toml", format!("{scene}\n[modes]\nnumber = 2\n"));
     let run = dir.raceway(&[&["run", "modes.toml", "--out", "found"][..], &FEW].concat());
@@ -175,7 +176,7 @@ fn apart(a: [f64; 2], b: [f64; 2]) -> f64 {
 /// meanwhile balls pass, which bends it by little.
 #[test]
 fn the_line_of_a_turning_spindle_stands_under_loads_that_stand() {
-    let dir = delivered();
+    let dir = coarse(&[SCENE]);
     let scene = without_analysis(&dir, SCENE);
     let analysis = "\n[speed]\ninner = \"3000 rpm\"\n[quasi_static]\nduration = \"10 ms\"\nstep = \"5 ms\"\n";
     dir.write("turning.toml", scene + analysis);
@@ -192,7 +193,7 @@ fn the_line_of_a_turning_spindle_stands_under_loads_that_stand() {
 /// Wrong: in motion the line would be in the frame of the ring. At the end the shaft has turned by 14.4 deg.
 #[test]
 fn the_line_of_a_moving_spindle_is_in_space() {
-    let dir = delivered();
+    let dir = coarse(&[SCENE]);
     in_motion(&dir, SCENE, ["spindle", "30000 rpm"]);
     let run = dir.raceway(&[&["run", "moving.toml", "--out", "found"][..], &FEW].concat());
     assert_eq!(run.code, Some(0), "{}", run.stderr);
@@ -208,7 +209,7 @@ fn the_line_of_a_moving_spindle_is_in_space() {
 /// another number of threads.
 #[test]
 fn a_pair_moves_on_one_spindle_and_goes_on_to_the_same_bits() {
-    let dir = delivered();
+    let dir = coarse(&[SCENE]);
     in_motion(&dir, SCENE, ["spindle", "6000 rpm"]);
     let growing = dir.text("moving.toml") + "\n[effects.frame_rotation]\n";
     dir.write("moving.toml", growing);

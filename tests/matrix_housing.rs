@@ -5,9 +5,9 @@ use std::path::Path;
 
 use fem::Material;
 
-use crate::housing::delivered;
 use crate::shared_housing::{FEW, SCENE};
 use crate::util::Dir;
+use crate::util::delivered::coarse;
 use crate::util::tables::Table;
 
 /// Number of the first node in the files.
@@ -114,7 +114,7 @@ const SHAFT: [&str; 5] = ["x_m", "y_m", "z_m", "tilt_x_rad", "tilt_y_rad"];
 /// in its modes and in motion. The matrices are those of the mesh, with all digits: only round-off is between.
 #[test]
 fn a_pair_in_a_housing_of_matrices_is_that_in_its_mesh() {
-    let dir = delivered();
+    let dir = coarse(&[SCENE]);
     write_housing(&dir);
     let rest = run_both(&dir, "rest", "[static]", &[]);
     let off = difference(&dir, &rest, "shaft.csv", &SHAFT);
@@ -143,7 +143,7 @@ fn a_pair_in_a_housing_of_matrices_is_that_in_its_mesh() {
 /// bearing with the nodes of the front one stands where no bearing is, and one that is not there is said at once.
 #[test]
 fn a_wrong_seat_of_a_housing_of_matrices_is_named() {
-    let dir = delivered();
+    let dir = coarse(&[SCENE]);
     write_housing(&dir);
     let [_, text] = scene(&dir, "[static]");
     let refused = |text: String, expected: &str| {
@@ -176,7 +176,7 @@ fn a_wrong_seat_of_a_housing_of_matrices_is_named() {
 /// word. With sound units nothing is said.
 #[test]
 fn units_that_make_no_solid_are_doubted() {
-    let dir = delivered();
+    let dir = coarse(&[SCENE]);
     write_housing(&dir);
     let few = FEW[..].to_vec();
     let doubts = |analysis: &str, [from, to]: [&str; 2]| {

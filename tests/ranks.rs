@@ -15,6 +15,7 @@ use crate::cuts::cut_motion;
 use crate::free_resume::everything;
 use crate::housing;
 use crate::sectors::SECTOR;
+use crate::util::delivered::delivered;
 use crate::util::lockstep::{assert_same_run, copy, small_motion};
 use crate::util::{Dir, Outcome, SCENE};
 
@@ -122,7 +123,7 @@ fn harmonics_have_the_same_bits_on_any_number_of_ranks() {
 #[test]
 #[ignore = "needs mpirun and a program built with MPI: scripts/test-mpi"]
 fn a_housing_has_the_same_bits_on_any_number_of_ranks() {
-    let dir = housing::delivered();
+    let dir = delivered();
     housing::in_motion(&dir);
     done(&dir.raceway(&["run", "motion.toml", "--out", "alone"]));
     let rest = "scenes/6010_plummer_block.toml";

@@ -1,7 +1,7 @@
 //! A ring whose seat moves with one node of a body of matrices, through the whole program.
 
-use crate::housing::delivered;
 use crate::util::Dir;
+use crate::util::delivered::delivered;
 use crate::util::tables::{Table, number, summary};
 
 /// Springs of the node, N/mm and N mm/rad.

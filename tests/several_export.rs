@@ -3,10 +3,10 @@
 use checkpoint::{Grid, StepRecord, all_steps, read_mesh, read_step, step_file_name};
 
 use crate::export::vtu_array;
-use crate::housing::delivered;
 use crate::several::{flexible_pair, pair, succeeds};
 use crate::several_modes::column;
 use crate::shared_housing::{FEW, SCENE};
+use crate::util::delivered::coarse;
 use crate::util::tables::Table;
 use crate::util::{Dir, assert_within};
 
@@ -355,7 +355,7 @@ fn modes_of_a_list_move_shaft_and_bearings_on_one_scale() {
 /// other order of the list the other bearing shows the body, in a frame that is turned.
 #[test]
 fn a_housing_stands_round_both_outer_rings_in_either_order() {
-    let dir = delivered();
+    let dir = coarse(&[SCENE]);
     let text = dir
         .text(SCENE)
         .replace("../meshes", "meshes")

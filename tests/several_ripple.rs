@@ -2,9 +2,9 @@
 
 use serde_json::Value;
 
-use crate::housing::delivered;
 use crate::several::{PAIR, flexible_pair, parts, succeeds, with_type};
 use crate::shared_housing::{FEW, SCENE as HOUSING};
+use crate::util::delivered::coarse;
 use crate::util::lockstep::small_motion;
 use crate::util::matrices::{assert_same_matrix, matrix};
 use crate::util::{Dir, assert_close};
@@ -286,7 +286,7 @@ fn a_pair_is_linearised_where_its_equilibria_over_time_stand() {
 /// Wrong: what bearings in one housing do to each other would have no ripple, or that of balls that stay.
 #[test]
 fn couplings_by_a_housing_have_the_ripple_of_balls_elsewhere() {
-    let dir = delivered();
+    let dir = coarse(&[HOUSING]);
     let half = ["0", "1"].map(|i| format!("bearing.{i}.first_ball_azimuth=\"10 deg\""));
     let moved = ["--set", half[0].as_str(), "--set", half[1].as_str()];
     // Some balls carry nothing: the entries change by 5 % of the largest.

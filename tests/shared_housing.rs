@@ -3,8 +3,9 @@
 use checkpoint::read_mesh;
 use serde_json::Value;
 
-use crate::housing::{assert_moves_and_goes_on, delivered};
+use crate::housing::assert_moves_and_goes_on;
 use crate::util::Dir;
+use crate::util::delivered::coarse;
 use crate::util::tables::{Table, number, summary};
 
 pub const SCENE: &str = "scenes/7010c_spindle_housing.toml";
@@ -24,14 +25,15 @@ pub const FEW: [&str; 8] = [
 /// would not find the seats. The housing gives, so the nose moves further than in a stiff one.
 #[test]
 fn a_pair_in_one_housing_gives_more_than_in_a_stiff_one() {
-    let dir = delivered();
+    let stiff = "scenes/7010c_spindle_pair.toml";
+    let dir = coarse(&[SCENE, stiff]);
     let run = |scene: &str, out: &str, more: &[&str]| {
         let run = dir.raceway(&[&["run", scene, "--out", out], more].concat());
         assert_eq!(run.code, Some(0), "{}", run.stderr);
         let line = Table::read(&dir, &format!("{out}/shaft.csv"));
         (line.column("x_m")[0], run.stdout)
     };
-    let (stiff, _) = run("scenes/7010c_spindle_pair.toml", "stiff", &[]);
+    let (stiff, _) = run(stiff, "stiff", &[]);
     let (found, said) = run(SCENE, "found", &FEW);
     assert!(found > 1.1 * stiff && found < 1.5 * stiff, "{found} {stiff}");
     let table = dir.text("found/bearings.csv");
@@ -72,7 +74,7 @@ pub fn without_analysis(dir: &Dir, scene: &str) -> String {
 /// point that failed. Balls that carry 20 kN each are more than these meshes hold.
 #[test]
 fn a_sweep_that_fails_leaves_the_seats_of_its_last_point() {
-    let dir = delivered();
+    let dir = coarse(&[SCENE]);
     let before = without_analysis(&dir, SCENE);
     for (name, values) in [("good", "\"1 N\""), ("bad", "\"1 N\", \"2 MN\"")] {
         let sweep = format!(
@@ -114,7 +116,7 @@ pub fn in_motion(dir: &Dir, scene: &str, [body, speed]: [&str; 2]) {
 /// bits after a resume or on another number of threads.
 #[test]
 fn a_pair_moves_in_one_housing_and_goes_on_to_the_same_bits() {
-    let dir = delivered();
+    let dir = coarse(&[SCENE]);
     moving(&dir);
     assert_moves_and_goes_on(&dir, "moving.toml", &FEW);
 }
@@ -123,7 +125,7 @@ fn a_pair_moves_in_one_housing_and_goes_on_to_the_same_bits() {
 /// user would take that of a bearing for all of it. The nose gives way as between two equilibria of nearby loads.
 #[test]
 fn the_stiffness_of_a_pair_in_one_housing_has_what_bearings_do_to_each_other() {
-    let dir = delivered();
+    let dir = coarse(&[SCENE]);
     let run = |arguments: &[&str]| {
         let run = dir.raceway(&[arguments, &FEW].concat());
         assert_eq!(run.code, Some(0), "{}", run.stderr);
@@ -155,7 +157,7 @@ fn the_stiffness_of_a_pair_in_one_housing_has_what_bearings_do_to_each_other() {
 /// If this failed, a bearing would sit in a seat that stands elsewhere.
 #[test]
 fn what_one_housing_of_several_bearings_does_not_have_ends_with_a_message() {
-    let dir = delivered();
+    let dir = coarse(&[SCENE]);
     let refused = |arguments: &[&str], expected: &str| {
         let run = dir.raceway(&[arguments, &["--out", "bad"], &FEW].concat());
         assert_ne!(run.code, Some(0));

@@ -13,7 +13,7 @@ use crate::util::Dir;
 const EXAMPLES: [(&str, &str); 14] = [
     ("heat SCENE", "heat warm.toml"),
     ("mesh SCENE", "mesh new.toml"),
-    ("prices SCENE", "prices motion.toml"),
+    ("prices SCENE", "prices short.toml"),
     ("pack DIR", "pack turning"),
     ("SCENE", "scene.toml"),
     ("STUDY", "study.toml"),
@@ -27,8 +27,8 @@ const EXAMPLES: [(&str, &str); 14] = [
     ("DIR", "turning"),
 ];
 
-/// A folder with an equilibrium `rest`, a motion `turning`, the scenes of both, a study, shares of time, a scene with a
-/// heat balance and one without meshes.
+/// A folder with an equilibrium `rest`, a motion `turning`, the scenes of both, a short motion, a study, shares of
+/// time, a scene with a heat balance and one without meshes.
 fn inputs() -> Dir {
     let dir = Dir::with_meshes();
     let mut gauges = String::new();
@@ -50,8 +50,10 @@ fn inputs() -> Dir {
     dir.write("scene.toml", with("[static]"));
     let points = "\n[probes.point.p]\nring = \"inner\"\nazimuth = \"3 deg\"\ngroove_angle = \"15 deg\"\n\
                   depth = \"0.1 mm\"\n\n[stress]\nnear_field = true\n";
-    let motion = "[dynamic]\nduration = \"2 ms\"\nstep = \"10 us\"\noutput_every = 20\n";
-    dir.write("motion.toml", with(motion) + points);
+    let lasting =
+        |time: &str| format!("[dynamic]\nduration = \"{time}\"\nstep = \"10 us\"\noutput_every = 20\n");
+    dir.write("motion.toml", with(&lasting("2 ms")) + points);
+    dir.write("short.toml", with(&lasting("0.2 ms")) + points);
     let heat = "expansion = \"11.5e-6 /K\"\n";
     let warm = with("[static]").replace(
         "density = \"7800 kg/m3\"\n",
@@ -66,7 +68,7 @@ fn inputs() -> Dir {
     );
     let study = include_str!("../fixtures/study.toml").replace("\"scene.toml\"", "\"pulse.toml\"");
     dir.write("study.toml", study);
-    dir.write("pulse.toml", scene.replace("[static]", motion));
+    dir.write("pulse.toml", scene.replace("[static]", &lasting("0.4 ms")));
     let mix = "title = \"shift\"\n[[conditions]]\nresults = \"rest\"\nshare = 0.7\n[[conditions]]\nresults = \
                \"turning\"\nshare = 0.3\n";
     dir.write("mix.toml", mix);

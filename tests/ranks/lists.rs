@@ -3,11 +3,11 @@
 use std::path::{Path, PathBuf};
 
 use super::{SECONDS, different, done, on_ranks, program};
-use crate::housing::delivered;
 use crate::sectors::SECTOR;
 use crate::several::flexible_pair;
 use crate::shared_housing::{FEW, SCENE as HOUSING, moving};
 use crate::util::Dir;
+use crate::util::delivered::delivered;
 use crate::util::lockstep::copy;
 
 /// A pair that speeds up under a load across, with all that a list keeps of a motion.

@@ -32,9 +32,9 @@ const LEVEL: Level = Level::hex8(54, 6, 1, 2);
 const APART: f64 = 0.06;
 /// Elements of a sleeve round it, across a seat, between the seats, and outwards.
 const ROUND: usize = 54;
-const SEAT: usize = 6;
-const BETWEEN: usize = 8;
-const OUTWARDS: usize = 3;
+const SEAT: usize = 4;
+const BETWEEN: usize = 5;
+const OUTWARDS: usize = 2;
 const SPEED: f64 = 500.0;
 
 /// The seat of a ring, by functions that are few but hold an oval.

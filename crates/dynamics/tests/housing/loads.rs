@@ -79,8 +79,8 @@ fn differences(side: Side, model: &Model, one: &Model) -> [f64; 3] {
     ]
 }
 
-/// Wrong: a housing would not sag, or not as the body that it is together with its ring. With as good as
-/// all functions of the nodes both are the same; without its weight they are not.
+/// Wrong: a housing would not sag, or not as the body that it is together with its ring. With all functions of the
+/// nodes both are the same; without its weight they are not.
 #[test]
 fn a_housing_sags_as_one_mesh_with_its_ring() {
     let own = tube(&outer(Hold::Clamped), 3).0;
@@ -89,9 +89,9 @@ fn a_housing_sags_as_one_mesh_with_its_ring() {
         let model = bearing(in_housing(own.clone(), functions, None), Backend::Auto);
         differences(Side::Outer, &heavy(model, Schedule::Constant), &one)
     };
-    let [few, all] = [[12, 2], [26, 8]].map(off);
+    let [few, all] = [[12, 2], [18, 6]].map(off);
     let ring = outer(Hold::MeanMotion);
-    let light = surrounding(own, space(&ring, harmonics(26, 8)), steel());
+    let light = surrounding(own, space(&ring, harmonics(18, 6)), steel());
     let light = RingModel {
         tie: Some(Arc::new(SeatTie::to_seat(Arc::new(light), 0))),
         ..ring
@@ -99,7 +99,7 @@ fn a_housing_sags_as_one_mesh_with_its_ring() {
     let light = heavy(bearing(light, Backend::Auto), Schedule::Constant);
     let light = differences(Side::Outer, &light, &one);
     println!("few {few:?}, all {all:?}, without weight {light:?}");
-    assert!(all[0] < 3e-5 && all[1] < 2e-6 && all[2] < 1e-6, "{all:?}");
+    assert!(all.iter().all(|off| *off < 1e-9), "{all:?}");
     assert!(few[0] < 0.02 && few[1] < 1e-2, "{few:?}");
     assert!(light[0] > 0.1 && light[2] > 0.01, "{light:?}");
 }
@@ -116,10 +116,10 @@ fn a_shaft_sags_as_one_mesh_with_its_ring() {
         let model = super::shaft::bearing(ring, Backend::Auto);
         differences(Side::Inner, &heavy(model, Schedule::Constant), &one)
     };
-    let all = off(on_shaft(own.clone(), [26, 8], None));
-    let light = off(super::shaft::on_shaft(own, [26, 8], None));
+    let all = off(on_shaft(own.clone(), [18, 6], None));
+    let light = off(super::shaft::on_shaft(own, [18, 6], None));
     println!("all {all:?}, as a rigid one {light:?}");
-    assert!(all[0] < 3e-5 && all[1] < 2e-6 && all[2] < 1e-6, "{all:?}");
+    assert!(all.iter().all(|off| *off < 1e-9), "{all:?}");
     assert!(light[0] > 0.05, "{light:?}");
 }
 
@@ -154,7 +154,7 @@ fn a_housing_moves_under_its_weight_as_one_mesh() {
     let (own, n) = (tube(&outer(Hold::Clamped), 3).0, 30);
     let one = heavy(struck(housing_as_one(3), Backend::Sparse), half());
     let expected = histories_of(&course(&one, 100.0, n), Side::Outer);
-    let ring = in_housing(own, [24, 8], Some(60e3));
+    let ring = in_housing(own, [18, 6], Some(60e3));
     let states = course(&heavy(struck(ring, Backend::Auto), half()), 100.0, n);
     let found = histories_of(&states, Side::Outer);
     let errors = [0, 1].map(|i| difference(&found[i], &expected[i]));
@@ -174,7 +174,7 @@ fn a_turning_shaft_moves_under_its_weight_as_one_mesh() {
         course(&model, 1000.0, n)
     };
     let expected = histories_of(&of(free(as_one(3), Backend::Sparse)), Side::Inner);
-    let states = of(free(on_shaft(own, [24, 8], Some(60e3)), Backend::Auto));
+    let states = of(free(on_shaft(own, [18, 6], Some(60e3)), Backend::Auto));
     let found = histories_of(&states, Side::Inner);
     let errors = [0, 1].map(|i| difference(&found[i], &expected[i]));
     println!("shaft and forces: {errors:?}");
@@ -264,10 +264,10 @@ fn a_turning_shaft_grows_as_one_mesh_with_its_ring() {
         let model = super::shaft::bearing(ring, Backend::Auto);
         differences(Side::Inner, &turning(model), &one)
     };
-    let all = off(on_shaft(own.clone(), [26, 8], None));
-    let still = off(super::shaft::on_shaft(own, [26, 8], None));
+    let all = off(on_shaft(own.clone(), [18, 6], None));
+    let still = off(super::shaft::on_shaft(own, [18, 6], None));
     println!("all {all:?}, the ring alone {still:?}");
-    assert!(all[0] < 3e-5 && all[1] < 1e-6 && all[2] < 1e-6, "{all:?}");
+    assert!(all.iter().all(|off| *off < 1e-9), "{all:?}");
     assert!(still[0] > 0.05 && still[2] > 1e-3, "{still:?}");
 }
 
@@ -283,7 +283,7 @@ fn a_growing_shaft_moves_as_one_mesh() {
         every_fifth(&motion, start, n)
     };
     let expected = of(free(as_one(3), Backend::Sparse));
-    let states = of(free(on_shaft(own, [24, 8], Some(60e3)), Backend::Auto));
+    let states = of(free(on_shaft(own, [18, 6], Some(60e3)), Backend::Auto));
     let [found, expected] = [&states, &expected].map(|states| {
         let tilts = states.iter().flat_map(|state| state.shaft[3..].to_vec());
         let [shaft, forces] = histories_of(states, Side::Inner);

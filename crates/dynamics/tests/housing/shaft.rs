@@ -108,7 +108,7 @@ fn ring_and_shaft_at_rest_are_those_of_one_mesh() {
     let one = equilibrium(&bearing(as_one(4), Backend::Sparse));
     let expected = &one.elastic[0].as_ref().unwrap()[..n_ring];
     let (mut moved, mut pushed, mut shaft) = (Vec::new(), Vec::new(), Vec::new());
-    for n in [[16, 2], [16, 4], [26, 8]] {
+    for n in [[16, 2], [16, 4], [18, 6]] {
         let model = bearing(on_shaft(own.clone(), n, None), Backend::Auto);
         let solution = equilibrium(&model);
         moved.push(difference(solution.elastic[0].as_ref().unwrap(), expected));
@@ -122,9 +122,9 @@ fn ring_and_shaft_at_rest_are_those_of_one_mesh() {
     }
     println!("displacements {moved:?}, forces {pushed:?}, shaft {shaft:?}");
     assert!(moved.windows(2).all(|e| e[1] < e[0]), "{moved:?}");
-    // The seat has 9 nodes across: degree 8 is all of it.
+    // The seat has 36 nodes round and 7 across: order 18 and degree 6 are all of it.
     assert!(
-        moved[2] < 1e-5 && pushed[2] < 1e-7 && shaft[2] < 1e-7,
+        moved[2] < 1e-9 && pushed[2] < 1e-9 && shaft[2] < 1e-9,
         "{moved:?} {pushed:?} {shaft:?}"
     );
     assert!(pushed[0] < 1e-3 && shaft[0] < 5e-3, "{pushed:?} {shaft:?}");
@@ -134,12 +134,12 @@ fn ring_and_shaft_at_rest_are_those_of_one_mesh() {
 /// its turning, its modes.
 #[test]
 fn ring_and_shaft_move_as_one_mesh() {
-    let expected = histories(&course(&free(as_one(3), Backend::Sparse), settings(), 60));
+    let expected = histories(&course(&free(as_one(3), Backend::Sparse), settings(), 40));
     let own = hollow_shaft(3).0;
     let mut errors = Vec::new();
-    for (n, below) in [([4, 2], 1e3), ([24, 8], 60e3)] {
+    for (n, below) in [([4, 2], 1e3), ([18, 6], 60e3)] {
         let ring = on_shaft(own.clone(), n, Some(below));
-        let found = histories(&course(&free(ring, Backend::Auto), settings(), 60));
+        let found = histories(&course(&free(ring, Backend::Auto), settings(), 40));
         errors.push([0, 1, 2].map(|i| difference(&found[i], &expected[i])));
     }
     println!("shaft, tilts and forces: {errors:?}");
@@ -176,7 +176,7 @@ fn ring_and_shaft_have_the_modes_of_one_mesh() {
         };
         let expected = of(as_one(3), Backend::Sparse);
         let mut errors = Vec::new();
-        for (n, below) in [([4, 2], 1e3), ([24, 8], 60e3)] {
+        for (n, below) in [([4, 2], 1e3), ([18, 6], 60e3)] {
             let found = of(on_shaft(own.clone(), n, Some(below)), Backend::Auto);
             let pairs = found.iter().zip(&expected);
             let off = pairs.map(|(a, b)| (a.frequency / b.frequency - 1.0).abs());
@@ -192,7 +192,7 @@ fn ring_and_shaft_have_the_modes_of_one_mesh() {
             }
         }
         println!("frequencies: {errors:?}");
-        assert!(errors[1] < 2e-3 && errors[1] < errors[0], "{errors:?}");
+        assert!(errors[1] < 4e-4 && errors[1] < errors[0], "{errors:?}");
     }
 }
 
