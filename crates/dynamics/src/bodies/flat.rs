@@ -31,7 +31,7 @@ pub struct FlatBody<const N: usize> {
     /// Of a shaft, the inertia of a ring that turns with it.
     pub turning: Option<Box<FrameInertia>>,
     /// Of a shaft that may tilt, its inertia and that of what is on it beyond small tilts.
-    pub far: Option<Box<LargeTilt>>,
+    pub large_tilt: Option<Box<LargeTilt>>,
     /// Of a shaft that may tilt, loads whose moments change with that.
     pub tilted: Option<TiltedLoads>,
     start: [f64; N],
@@ -46,7 +46,7 @@ impl<const N: usize> FlatBody<N> {
             dofs,
             imposed,
             turning: None,
-            far: None,
+            large_tilt: None,
             tilted: None,
         }
     }
@@ -60,8 +60,8 @@ impl<const N: usize> FlatBody<N> {
         }
         let end_five = five(end);
         let turning = self.turning.as_ref().map(|of| of.forces(end_five));
-        let far = self.far.as_ref().map(|of| of.forces(end_five));
-        for more in [turning, far].into_iter().flatten() {
+        let large = self.large_tilt.as_ref().map(|of| of.forces(end_five));
+        for more in [turning, large].into_iter().flatten() {
             forces
                 .iter_mut()
                 .zip(more)
@@ -135,8 +135,8 @@ impl<const N: usize> Lumped for FlatBody<N> {
             tangent[(n + 1) * k] = self.dofs[i].residual(interval, self.start[i])[1];
         }
         let turning = self.turning.as_ref().map(|of| of.slopes());
-        let far = self.far.as_ref().map(|of| of.slopes());
-        for slopes in [turning, far].into_iter().flatten() {
+        let large = self.large_tilt.as_ref().map(|of| of.slopes());
+        for slopes in [turning, large].into_iter().flatten() {
             for (row, i) in self.free().enumerate() {
                 for (column, k) in self.free().enumerate() {
                     tangent[n * row + column] += slopes[k][i];

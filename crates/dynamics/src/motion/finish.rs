@@ -207,8 +207,8 @@ fn finish_shaft(next: &mut MotionState, parts: &BearingParts, solution: &StepSol
     if let Some(turning) = &parts.shaft.turning {
         next.ledger.frame_work -= turning.work(solution.shaft);
     }
-    if let Some(far) = &parts.shaft.far {
-        next.ledger.frame_work -= far.work(solution.shaft);
+    if let Some(large) = &parts.shaft.large_tilt {
+        next.ledger.frame_work -= large.work(solution.shaft);
     }
     let moments = parts.shaft.tilted_moments(Interval::Step(step), &solution.shaft);
     for (i, moment) in [3, 4].into_iter().zip(moments) {

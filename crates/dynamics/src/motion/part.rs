@@ -184,7 +184,7 @@ impl Motion<'_> {
         let imposed = [0, 1, 2, 3, 4].map(|i| self.model.prescribed(i, span.at(1.0)));
         let mut shaft = FlatBody::new(Name::Shaft, dofs, imposed);
         shaft.turning = self.frame_inertia(state, span).map(Box::new);
-        shaft.far = self.large_tilt(state, span).map(Box::new);
+        shaft.large_tilt = self.large_tilt(state, span).map(Box::new);
         shaft
     }
 
