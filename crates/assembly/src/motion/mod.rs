@@ -141,7 +141,8 @@ impl<'a> AssemblyMotion<'a> {
         for (bearing, settings) in assembly.bearings.iter().zip(settings) {
             require_conserving(&settings)?;
             let motion = Motion::beside(&bearings, &bearing.model, settings);
-            bearings.push(motion.map_err(AssemblyError::of_bearing(&bearing.name))?);
+            let motion = motion.map_err(AssemblyError::of_bearing(&bearing.name))?;
+            bearings.push(motion.of_small_tilts());
         }
         Ok(AssemblyMotion {
             mounts: assembly.mounts(),

@@ -121,6 +121,12 @@ impl<'a> Motion<'a> {
         Ok(motion)
     }
 
+    /// The same on a shaft whose places move by small tilts: inertia at large ones would be that of another motion.
+    pub fn of_small_tilts(mut self) -> Motion<'a> {
+        self.tilting = None;
+        self
+    }
+
     /// Factors of a rung; made when first asked for.
     pub(super) fn rung(&self, k: u32) -> Result<&Rung, DynamicsError> {
         let cell = &self.rungs[k as usize];
