@@ -87,13 +87,17 @@ fn free_without_thrust(scene: &Scene, case: &Case<'_>) -> Option<String> {
     ))
 }
 
+/// Whether the analysis takes the inertia of the shaft.
+fn asks_for_inertia(scene: &Scene) -> bool {
+    matches!(scene.analysis, Analysis::Dynamic(_) | Analysis::Modes(_))
+}
+
 /// The mass of a shaft that tilts has its inertia at the axis point, wherever its weight acts.
 fn mass_beside_load_point(scene: &Scene) -> Option<String> {
     let shaft = &scene.shaft;
-    let has_inertia = matches!(scene.analysis, Analysis::Dynamic(_) | Analysis::Modes(_));
     let tilts = [shaft.tilt_x, shaft.tilt_y].contains(&ShaftMotion::Free);
     let apart = shaft.load_point;
-    if !has_inertia || !tilts || shaft.mass == 0.0 || apart == 0.0 {
+    if !asks_for_inertia(scene) || !tilts || shaft.mass == 0.0 || apart == 0.0 {
         return None;
     }
     Some(format!(
@@ -108,8 +112,7 @@ fn mass_beside_load_point(scene: &Scene) -> Option<String> {
 /// is none: m = rho pi (R^2 - r^2) b, I_p = m (R^2 + r^2) / 2, I = I_p / 2 + m b^2 / 12.
 fn rigid_ring_without_inertia(scene: &Scene, case: &Case<'_>) -> Option<String> {
     let shaft = &scene.shaft;
-    let has_inertia = matches!(scene.analysis, Analysis::Dynamic(_) | Analysis::Modes(_));
-    if !has_inertia || scene.inner.body.is_some() {
+    if !asks_for_inertia(scene) || scene.inner.body.is_some() {
         return None;
     }
     let is_free = |motions: &[ShaftMotion]| motions.contains(&ShaftMotion::Free);
