@@ -86,23 +86,25 @@ impl<'a> Motion<'a> {
                 .transpose()
         };
         let [inner, outer] = model.backend.try_on_sides(build)?;
-        let turning = wobbles(model, &settings.speeds).then(|| {
-            // A ring on a body turns where it sits, as a rigid one, or with a frame of its own.
-            let is_turned = |ring: &&MovingRing| ring.body.tied().is_some_and(|body| body.turns_ring());
-            let ring = inner.as_ref().filter(|ring| !is_turned(ring));
-            ring.map(|ring| ring.body.rigid_inertia()).unwrap_or_default()
+        let (turns, tilts) = (wobbles(model, &settings.speeds), tilts(model));
+        let inertia = inner
+            .as_ref()
+            .filter(|_| turns || tilts)
+            .map(|ring| ring.body.rigid_inertia());
+        // A ring on a body turns where it sits, as a rigid one, or with a frame of its own.
+        let tied = inner.as_ref().and_then(|ring| ring.body.tied());
+        let is_turned = tied.is_some_and(|body| body.turns_ring());
+        let turning = turns.then(|| inertia.filter(|_| !is_turned).unwrap_or_default());
+        let tilting = tilts.then(|| {
+            let ring = inertia.filter(|_| is_on_shaft(model)).unwrap_or_default();
+            let carried = model.carried_inertia().unwrap_or_default();
+            shaft_inertia(model).with(ring).with(carried)
         });
         let [frame, _] = Side::BOTH.map(|side| model.frame(side));
         let tilt_by_stress = match frame {
             Frame::Stiffened => inner.as_ref().map_or(0.0, |ring| ring.body.tilt_by_stress()),
             Frame::Still | Frame::Turning => 0.0,
         };
-        let tilting = tilts(model).then(|| {
-            let ring = inner.as_ref().filter(|_| is_on_shaft(model));
-            let ring = ring.map(|ring| ring.body.rigid_inertia()).unwrap_or_default();
-            let carried = model.carried_inertia().unwrap_or_default();
-            shaft_inertia(model).with(ring).with(carried)
-        });
         let kinematics = Kinematics::new(&model.geometry, settings.slip);
         let rungs = (0..=settings.ladder.halvings).map(|_| OnceLock::new()).collect();
         let motion = Motion {
