@@ -40,12 +40,51 @@ pub(crate) fn write_hdf(
     format: Format,
     fill: impl FnOnce(&hdf5::File) -> hdf5::Result<Vec<String>>,
 ) -> Result<(), CheckpointError> {
-    let (tmp, path) = (temporary(dir, name), dir.join(name));
-    let written = create_hdf(&tmp, format, fill)
-        .map_err(CheckpointError::hdf("write", &path))
-        .and_then(|extents| append_seal(&tmp, extents).map_err(CheckpointError::io("write", &path)));
-    publish(written, dir, &tmp, &path)?;
-    sync_dir(dir)
+    Unsealed::write(dir, name, format, fill)?.publish()
+}
+
+/// A file that lacks its seal and its name: dropped, it is gone.
+#[derive(Debug)]
+pub(crate) struct Unsealed {
+    dir: PathBuf,
+    tmp: PathBuf,
+    path: PathBuf,
+    extents: Vec<Extent>,
+}
+
+impl Unsealed {
+    /// Does all of [`write_hdf`] that needs the HDF5 library.
+    pub fn write(
+        dir: &Path,
+        name: &str,
+        format: Format,
+        fill: impl FnOnce(&hdf5::File) -> hdf5::Result<Vec<String>>,
+    ) -> Result<Unsealed, CheckpointError> {
+        let mut unsealed = Unsealed {
+            dir: dir.to_path_buf(),
+            tmp: temporary(dir, name),
+            path: dir.join(name),
+            extents: Vec::new(),
+        };
+        let written = create_hdf(&unsealed.tmp, format, fill);
+        unsealed.extents = written.map_err(CheckpointError::hdf("write", &unsealed.path))?;
+        Ok(unsealed)
+    }
+
+    /// Seals the file, brings it to the disk and gives it its name.
+    pub fn publish(mut self) -> Result<(), CheckpointError> {
+        let sealed = append_seal(&self.tmp, std::mem::take(&mut self.extents));
+        let sealed = sealed.map_err(CheckpointError::io("write", &self.path));
+        publish(sealed, &self.dir, &self.tmp, &self.path)?;
+        sync_dir(&self.dir)
+    }
+}
+
+impl Drop for Unsealed {
+    fn drop(&mut self) {
+        // A published file has another name. A failure leaves a hidden file, which the next run removes.
+        let _ = fs::remove_file(&self.tmp);
+    }
 }
 
 /// Writes an HDF5 file in `dir` as [`write_hdf`] does, but without a name: it is gone when it is closed, however the

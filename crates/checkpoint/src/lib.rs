@@ -52,6 +52,7 @@ mod places;
 mod region;
 mod regular;
 mod seal;
+mod step_writer;
 
 pub use background::{BackgroundOutput, Companion, Made, Written};
 pub use body::{Body, CellKind, point_ranges};

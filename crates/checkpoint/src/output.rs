@@ -21,19 +21,15 @@ use crate::names::{INDEX_FILE, step_file_name};
 use crate::point_table::{PointTable, write_table};
 use crate::record::{StepRecord, require_texts};
 use crate::series::write_series;
-use crate::step::{StepOrigin, read_about, write_step_file};
+use crate::step::read_about;
+use crate::step_writer::{StepWriter, WrittenStep};
 use crate::storage::Storage;
 
 /// A result folder open for writing; it is locked against other processes.
 #[derive(Debug)]
 pub struct Output {
     lock: FolderLock,
-    storage: Storage,
-    n_points: usize,
-    n_cells: usize,
-    mesh_hash: String,
-    run: Option<String>,
-    about: BTreeMap<String, String>,
+    writer: StepWriter,
     /// Number and time, s, of the committed steps, growing.
     steps: Vec<(u64, f64)>,
 }
@@ -148,67 +144,48 @@ impl Output {
     }
 
     fn new(lock: FolderLock, mesh: &MeshFile, storage: Storage, steps: Vec<(u64, f64)>) -> Output {
-        Output {
-            lock,
-            storage,
-            n_points: mesh.n_points,
-            n_cells: mesh.n_cells,
-            mesh_hash: mesh.hash.clone(),
-            run: mesh.run.clone(),
-            about: BTreeMap::new(),
-            steps,
-        }
+        let writer = StepWriter::new(lock.dir().to_path_buf(), mesh, storage);
+        Output { lock, writer, steps }
     }
 
     /// Sets the texts that every step from now on holds about its run, by name (letters, digits, `_`), besides the
     /// scene: where things came from. [`crate::read_about`] reads them.
     pub fn describe(&mut self, about: BTreeMap<String, String>) -> Result<(), CheckpointError> {
         require_texts(&about)?;
-        self.about = about;
+        self.writer.about = about;
         Ok(())
     }
 
     /// Writes one step and returns the path of its file. When this returns, the step survives a crash. Steps and
     /// times must grow.
     pub fn write_step(&mut self, record: &StepRecord) -> Result<PathBuf, CheckpointError> {
-        record.validate(self.n_points, self.n_cells)?;
-        if let Some(&(last, last_time)) = self.steps.last()
-            && (record.step <= last || record.time <= last_time)
-        {
-            let (step, time) = (record.step, record.time);
-            return Err(CheckpointError::StepOrder {
-                step,
-                time,
-                last,
-                last_time,
-            });
-        }
-        let name = step_file_name(record.step);
+        let written = self.writer.write(record, self.last_step())?;
+        self.commit(written)
+    }
+
+    /// Brings a step to the disk that follows the last one, and names it.
+    pub(crate) fn commit(&mut self, written: WrittenStep) -> Result<PathBuf, CheckpointError> {
+        let WrittenStep { file, step, time } = written;
+        file.publish()?;
         let dir = self.lock.dir();
-        write_step_file(dir, &name, record, &self.origin(), self.storage)?;
         if self.steps.is_empty() {
             note_first_step(dir)?;
         }
-        self.steps.push((record.step, record.time));
+        self.steps.push((step, time));
         write_series(dir, &self.steps)?;
-        Ok(dir.join(name))
+        Ok(dir.join(step_file_name(step)))
+    }
+
+    /// Writes steps beside this, which commits them.
+    pub(crate) fn step_writer(&self) -> StepWriter {
+        self.writer.clone()
     }
 
     /// Writes fields of the run as a whole as a file `name`, in place of an earlier one. Its precision is that of
     /// stress.
     pub fn write_table(&self, name: &str, table: &PointTable) -> Result<(), CheckpointError> {
-        let written = (&self.origin(), self.storage.stress);
-        write_table(self.dir(), name, table, self.n_points, written)
-    }
-
-    /// What the files of the run say about it.
-    fn origin(&self) -> StepOrigin<'_> {
-        StepOrigin {
-            program_version: env!("CARGO_PKG_VERSION"),
-            mesh_hash: &self.mesh_hash,
-            run: self.run.as_deref(),
-            about: &self.about,
-        }
+        let written = (&self.writer.origin(), self.writer.storage.stress);
+        write_table(self.dir(), name, table, self.writer.n_points, written)
     }
 
     /// Builds the temporal index over all committed steps and returns what it shows; `None` for a run without steps,
@@ -232,22 +209,22 @@ impl Output {
 
     /// Points of all bodies together; every field over points has this many rows.
     pub fn n_points(&self) -> usize {
-        self.n_points
+        self.writer.n_points
     }
 
     /// Cells of all bodies together; every field over cells has this many rows.
     pub fn n_cells(&self) -> usize {
-        self.n_cells
+        self.writer.n_cells
     }
 
     /// Fingerprint of the mesh, as stored in every step.
     pub fn mesh_hash(&self) -> &str {
-        &self.mesh_hash
+        &self.writer.mesh_hash
     }
 
     /// Identity of the run, as stored in every file; None if it was not given.
     pub fn run(&self) -> Option<&str> {
-        self.run.as_deref()
+        self.writer.run.as_deref()
     }
 
     /// Number and time, s, of the last committed step.

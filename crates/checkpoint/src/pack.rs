@@ -160,7 +160,8 @@ pub fn unpack_steps(lock: &FolderLock) -> Result<usize, CheckpointError> {
                 &whole.record,
                 &whole.origin(),
                 whole.storage,
-            )?;
+            )?
+            .publish()?;
             read_step(&single.path)?;
             n_steps += 1;
         }

@@ -34,6 +34,7 @@ const MESH_SHARE: u64 = 4;
 const BLOCK: usize = 1 << 18;
 
 /// A piece of a file that holds values of one data set.
+#[derive(Debug)]
 pub(crate) struct Extent {
     /// Path of the data set.
     pub path: String,

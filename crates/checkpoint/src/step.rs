@@ -22,7 +22,7 @@ use std::path::Path;
 
 use hdf5::types::{IntSize, TypeDescriptor};
 
-use crate::atomic::{self, Format};
+use crate::atomic::{Format, Unsealed};
 use crate::cells::{CellFields, IntegrationPointStress, TENSOR};
 use crate::checksum::Element;
 use crate::dataset::{
@@ -60,15 +60,15 @@ pub(crate) struct StepOrigin<'a> {
     pub about: &'a BTreeMap<String, String>,
 }
 
-/// Writes a step file under `name` into `dir`; the record must have been validated.
+/// Writes a step file `name` of `dir`, all but its seal and name; the record must have been validated.
 pub(crate) fn write_step_file(
     dir: &Path,
     name: &str,
     record: &StepRecord,
     origin: &StepOrigin,
     storage: Storage,
-) -> Result<(), CheckpointError> {
-    atomic::write_hdf(dir, name, Format::Earliest, |file| {
+) -> Result<Unsealed, CheckpointError> {
+    Unsealed::write(dir, name, Format::Earliest, |file| {
         create_vtkhdf(file, [1, 0])?;
         link_mesh(file, MESH_FILE)?;
         fill_step(file, record, origin, storage)

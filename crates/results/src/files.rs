@@ -1,6 +1,7 @@
 //! Everything that is written while a run goes on: tables, step files, and the seconds it takes.
 //!
-//! Step files are written by a thread of their own; the run only waits when it is `QUEUE` steps ahead of the disk.
+//! Step files are written by threads of their own; the run only waits when they have `QUEUE` steps besides those that
+//! they work at.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -35,8 +36,8 @@ use super::tables::{OwnColumns, Tables};
 use crate::failure::Failure;
 use crate::survey::Survey;
 
-/// Step files that may wait for the disk, besides the one being written.
-const QUEUE: usize = 2;
+/// Steps that may wait, besides the one being made and the one being written.
+const QUEUE: usize = 1;
 
 /// The files of one run. Rank 0 writes for all; on the others there are none, and writing does nothing. The stress of
 /// rings in sectors is recovered by all ranks.

@@ -41,7 +41,7 @@ pub const REDUCTION: &str = "reduction";
 pub const OUTPUT: &str = "output";
 /// Lap: waiting for the disk.
 pub const DISK_WAIT: &str = "output/disk_wait";
-/// Lap: writing of step files on its own thread, beside the computation.
+/// Lap: writing of step files and bringing them to the disk, each on a thread beside the computation.
 pub const DISK: &str = "disk";
 /// Lap: the whole run.
 pub const TOTAL: &str = "total";

@@ -1,4 +1,4 @@
-//! Writing on a thread of its own.
+//! Writing on threads of its own.
 
 use std::fs;
 
@@ -8,7 +8,7 @@ use crate::fixture::{bodies, record};
 
 /// Wrong if the queue dropped, reordered or changed a step.
 #[test]
-fn the_thread_writes_the_same_files() {
+fn the_threads_write_the_same_files() {
     let (direct, queued) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
     let mut output = Output::create(direct.path(), &bodies(), Storage::default()).unwrap();
     let other = Output::create(queued.path(), &bodies(), Storage::default()).unwrap();
@@ -33,12 +33,12 @@ fn the_thread_writes_the_same_files() {
 
 /// Wrong if a run went on after a step could not be written, or the reason were lost.
 #[test]
-fn an_error_on_the_thread_reaches_the_run() {
+fn an_error_on_a_thread_reaches_the_run() {
     let dir = tempfile::tempdir().unwrap();
     let output = Output::create(dir.path(), &bodies(), Storage::default()).unwrap();
     let mut background = BackgroundOutput::start(output, 1, Vec::new()).unwrap();
     background.write_step(record(5)).unwrap();
-    // The second write of step 5 fails on the thread; one of the next calls must say so.
+    // The second write of step 5 fails on a thread; one of the next calls must say so.
     let error = (0..1000)
         .find_map(|_| background.write_step(record(5)).err())
         .unwrap();
