@@ -141,7 +141,7 @@ fn init_replaces_nothing_and_takes_the_numbers_of_a_catalogue() {
         ),
         (
             &["init", "--out", "c.toml"],
-            "error: --bore is missing; expected a series 60, 62, 63, 70, 72 or 73",
+            "error: --bore is missing; expected a series 60, 62, 63, 618, 619, 70, 72, 73, 718 or 719",
         ),
         (
             &["init", "6206", "--ball-diameter", "18 mm", "--out", "c.toml"],

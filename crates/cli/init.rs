@@ -14,8 +14,8 @@ use scene::{MeshFiles, Scene, StarterRequest, file_name, scene_text};
 /// What the command line asks for.
 #[derive(Debug, Args)]
 pub struct Init {
-    /// Designation with its suffixes, such as 7208, 7014 ACD, 6203-2RS1/C3; series 60, 62, 63, 70, 72, 73 with bores
-    /// of 10 to 100 mm.
+    /// Designation with its suffixes, such as 7208, 71914 ACD, 6203-2RS1/C3; series 60, 62, 63, 618, 619, 70, 72, 73,
+    /// 718 and 719 with bores of 10 to 100 mm.
     designation: Vec<String>,
     /// Bore diameter, such as "40 mm".
     #[arg(long, value_name = "LENGTH", value_parser = quantity::<LENGTH>)]

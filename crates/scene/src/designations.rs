@@ -1,6 +1,7 @@
-//! What the designation of a bearing says: bore, outside diameter and width of ISO 15, dimension series 10, 02 and 03,
-//! which catalogues print for the deep groove bearings 60, 62, 63 and the angular contact bearings 70, 72, 73; the
-//! contact angle of a suffix; the clearance of deep groove bearings of ISO 5753-1.
+//! What the designation of a bearing says: bore, outside diameter and width of ISO 15, dimension series 18, 19, 10, 02
+//! and 03, which catalogues print for the deep groove bearings 618, 619, 60, 62, 63 and the angular contact bearings
+//! 718, 719, 70, 72, 73; the contact angle of a suffix; the clearance of deep groove bearings of ISO 5753-1. Some
+//! makers write 68, 69, 78 and 79 for the first two series.
 //!
 //! Makers write a suffix in many ways: `7010C`, `7010 CD/P4A`, `7010-C-T-P4S`; `6203-2RS1/C3`, `6203ZZC3`. Spaces,
 //! dashes and strokes part its words. The first word of an angular contact bearing says its angle, C2 to C5 anywhere
@@ -15,6 +16,20 @@ type Sizes = [(f64, f64); 21];
 #[rustfmt::skip]
 const BORES: [f64; 21] = [
     10., 12., 15., 17., 20., 25., 30., 35., 40., 45., 50., 55., 60., 65., 70., 75., 80., 85., 90., 95., 100.,
+];
+/// Dimension series 18.
+#[rustfmt::skip]
+const SERIES_18: Sizes = [
+    (19., 5.), (21., 5.), (24., 5.), (26., 5.), (32., 7.), (37., 7.), (42., 7.), (47., 7.), (52., 7.), (58., 7.),
+    (65., 7.), (72., 9.), (78., 10.), (85., 10.), (90., 10.), (95., 10.), (100., 10.), (110., 13.), (115., 13.),
+    (120., 13.), (125., 13.),
+];
+/// Dimension series 19.
+#[rustfmt::skip]
+const SERIES_19: Sizes = [
+    (22., 6.), (24., 6.), (28., 7.), (30., 7.), (37., 9.), (42., 9.), (47., 9.), (55., 10.), (62., 12.), (68., 12.),
+    (72., 12.), (80., 13.), (85., 13.), (90., 13.), (100., 16.), (105., 16.), (110., 16.), (120., 18.), (125., 18.),
+    (130., 18.), (140., 20.),
 ];
 /// Dimension series 10.
 #[rustfmt::skip]
@@ -55,9 +70,9 @@ const CLEARANCES: [(f64, [Range; 5]); 9] = [
     (100., [(1., 18.), (12., 36.), (30., 58.), (53., 84.), (75., 120.)]),
 ];
 /// What a designation looks like, for messages.
-pub const DESIGNATIONS: &str = "expected a series 60, 62, 63, 70, 72 or 73 with a bore code 00 to 20, such as 6206, \
-                                7208 or 7010C, or the dimensions: --bore, --outside, --width and --contact-angle or \
-                                --radial-clearance";
+pub const DESIGNATIONS: &str = "expected a series 60, 62, 63, 618, 619, 70, 72, 73, 718 or 719 with a bore code 00 to \
+                                20, such as 6206, 7208 or 71910C, or the dimensions: --bore, --outside, --width and \
+                                --contact-angle or --radial-clearance";
 
 /// What a designation says.
 pub struct Listed {
@@ -83,11 +98,13 @@ pub fn listed(designation: &str) -> Result<Listed, String> {
         Some(end) => text.split_at(end),
         None => (text.as_str(), ""),
     };
-    if digits.len() != 4 {
-        return Err(unknown());
-    }
-    let (series, code) = digits.split_at(2);
+    let (series, code) = digits
+        .len()
+        .checked_sub(2)
+        .map_or((digits, ""), |end| digits.split_at(end));
     let sizes = match series {
+        "618" | "68" | "718" | "78" => &SERIES_18,
+        "619" | "69" | "719" | "79" => &SERIES_19,
         "60" | "70" => &SERIES_10,
         "62" | "72" => &SERIES_02,
         "63" | "73" => &SERIES_03,
@@ -185,6 +202,27 @@ mod tests {
                 (Some(degrees), note),
                 "{designation}"
             );
+        }
+    }
+
+    /// Wrong: a thin bearing would have the size of another. From catalogues of spindle and thin section bearings.
+    #[test]
+    fn thin_series_have_their_sizes() {
+        let cases = [
+            ("71900 CE/P4A", (10.0, 22.0, 6.0)),
+            ("71910C", (50.0, 72.0, 12.0)),
+            ("7914A5", (70.0, 100.0, 16.0)),
+            ("71920 ACD", (100.0, 140.0, 20.0)),
+            ("71816 C", (80.0, 100.0, 10.0)),
+            ("61808", (40.0, 52.0, 7.0)),
+            ("6907", (35.0, 55.0, 10.0)),
+        ];
+        for (designation, size) in cases {
+            let found = listed(designation).unwrap();
+            assert_eq!((found.bore, found.outside, found.width), size, "{designation}");
+        }
+        for wrong in ["1", "7", "719", "71921C", "72910", "719101"] {
+            assert!(listed(wrong).is_err(), "{wrong}");
         }
     }
 
