@@ -164,14 +164,6 @@ impl StaticSolution {
         let feet = self.footprints[side.index()].iter().enumerate();
         feet.filter_map(patch).collect()
     }
-
-    /// Semi-axes of the spread patches of one side, m, by ball; empty for a rigid ring or facets.
-    pub fn patch_axes(&self, side: Side) -> Vec<[f64; 2]> {
-        self.footprints[side.index()]
-            .iter()
-            .filter_map(|f| f.semi_axes)
-            .collect()
-    }
 }
 
 /// Work of the loads on the balls over their displacements, J.
@@ -383,7 +375,7 @@ fn edge_warnings(
             None => {
                 let foot = footprints[side.index()].get(*ball);
                 let contact = balls[*ball].contact(side);
-                let reach = contact.semi_axes_m[0] / model.geometry.groove_radius(side);
+                let reach = contact.semi_axes_m.groove / model.geometry.groove_radius(side);
                 foot.is_some_and(|foot| foot.is_beyond(contact.contact_angle_rad))
                     || model.shoulders.is_beyond(side, contact.contact_angle_rad, reach)
             }
@@ -421,7 +413,7 @@ fn ball_results(
             None => state.force.force,
         };
         let semi_axes = hertz.semi_axes(force);
-        let of_strips = |strips: &Strips| strips.bearing(state.force.approach, state.angle, semi_axes.into());
+        let of_strips = |strips: &Strips| strips.bearing(state.force.approach, state.angle, semi_axes);
         let bearing = site.strips.as_ref().map(of_strips);
         let peak = bearing.as_ref().map_or(1.0, |bearing| bearing.peak);
         ContactResult {
