@@ -104,10 +104,7 @@ impl StaticSolution {
         }
         let load_work = ball_work(parts, &u)
             + dot(&parts.shaft_load(), &u.shaft)
-            + dot(
-                &parts.shaft.tilted_moments(Interval::Rest, &u.shaft),
-                &u.shaft[3..],
-            )
+            + dot(&parts.shaft.loads_by_tilt(Interval::Rest, &u.shaft), &u.shaft)
             + ring_load_work
             + seat_work(parts, &u)
             + finite_load;
