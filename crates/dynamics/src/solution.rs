@@ -85,7 +85,7 @@ impl StaticSolution {
         let states = parts.states_at(&u);
         let forces = on_rings(&states);
         let (residual, reaction) = shaft_balance(parts, &u, &forces);
-        let finite = parts.finite_motions(&parts.unknowns(&u));
+        let finite = parts.system().finite_motions(CONTACTS, &parts.unknowns(&u));
         // Loads on the rings, through their elastic motion: on their bodies and, besides the normal forces, at
         // contacts.
         let ring_load_work = body_work(&case.loads, &rings)
