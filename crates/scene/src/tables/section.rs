@@ -40,9 +40,9 @@ pub enum SectionElement {
 /// Diameters of the shoulders beside a groove, m.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ShoulderDiameters {
-    /// Below the groove.
+    /// On the side of lower z.
     pub at_low_z: f64,
-    /// Above the groove.
+    /// On the side of higher z.
     pub at_high_z: f64,
 }
 
