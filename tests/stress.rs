@@ -63,7 +63,7 @@ fn the_near_field_gives_the_stress_under_a_ball() {
         let of_ball = |name: &str| balls.column(&format!("{ring}_{name}"))[0];
         let (angle, peak) = (of_ball("contact_angle_rad"), of_ball("peak_pressure_pa"));
         let axes = [of_ball("semi_axis_groove_m"), of_ball("semi_axis_rolling_m")];
-        let largest = subsurface(axes, 0.3).von_mises;
+        let largest = subsurface(axes.into(), 0.3).von_mises;
         let depth = largest.depth_over_minor_axis * axes[1];
         let (near, far) = (format!("near_{ring}"), format!("far_{ring}"));
         let tables = under_ball(ring, angle, depth);
@@ -188,7 +188,10 @@ fn passing_balls_leave_pulses_of_hertz_size() {
     for ring in ["inner", "outer"] {
         let of_ball = |name: &str| balls.column(&format!("{ring}_{name}"))[0];
         let axes = [of_ball("semi_axis_groove_m"), of_ball("semi_axis_rolling_m")];
-        let depth = subsurface(axes, 0.3).orthogonal_shear.depth_over_minor_axis * axes[1];
+        let depth = subsurface(axes.into(), 0.3)
+            .orthogonal_shear
+            .depth_over_minor_axis
+            * axes[1];
         probes += &format!(
             "[probes.point.{ring}]\nring = \"{ring}\"\nazimuth = \"10 deg\"\ngroove_angle = \"{} rad\"\ndepth \
              = \"{depth} m\"\n",
@@ -216,7 +219,7 @@ fn passing_balls_leave_pulses_of_hertz_size() {
         let of_ball = |name: &str| balls.column(&format!("{ring}_{name}"))[0];
         let axes = [of_ball("semi_axis_groove_m"), of_ball("semi_axis_rolling_m")];
         let amplitude =
-            subsurface(axes, 0.3).orthogonal_shear.over_peak_pressure * of_ball("peak_pressure_pa");
+            subsurface(axes.into(), 0.3).orthogonal_shear.over_peak_pressure * of_ball("peak_pressure_pa");
         let history = table.column(&format!("{ring}_stress_td_pa"));
         let (low, high) = history
             .iter()
@@ -228,8 +231,11 @@ fn passing_balls_leave_pulses_of_hertz_size() {
             (1.0, 32.2685e-3, 4.75e-3)
         };
         let radius = centre + sign * groove * of_ball("contact_angle_rad").cos();
-        let depth = subsurface(axes, 0.3).orthogonal_shear.depth_over_minor_axis * axes[1];
-        let field = EllipticPressure::of_peak(of_ball("peak_pressure_pa"), axes, 0.3);
+        let depth = subsurface(axes.into(), 0.3)
+            .orthogonal_shear
+            .depth_over_minor_axis
+            * axes[1];
+        let field = EllipticPressure::of_peak(of_ball("peak_pressure_pa"), axes.into(), 0.3);
         for ((time, azimuth), found) in table.column("time_s").iter().zip(&azimuths).zip(&history) {
             let ring_turned = if ring == "inner" {
                 1800.0 * PI / 30.0 * time

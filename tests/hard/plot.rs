@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use figure::{Axis, Figure, Series};
+use figure::{Axis, DataPoint, Figure, Series};
 
 /// A curve.
 pub struct Curve {
@@ -25,7 +25,8 @@ pub fn write(path: &Path, title: &str, plot: &Plot) {
     };
     let mut figure = Figure::new(title.replace('_', " "), axis(plot.x), axis(plot.y)).size(600, 320);
     for curve in &plot.curves {
-        figure = figure.series(Series::line(curve.name.clone(), curve.points.clone()));
+        let points = curve.points.iter().copied().map(DataPoint::from).collect();
+        figure = figure.series(Series::line(curve.name.clone(), points));
     }
     std::fs::write(path, figure.svg().unwrap()).unwrap();
 }

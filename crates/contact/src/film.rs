@@ -66,8 +66,9 @@ impl FilmContact {
         hertz: &HertzContact,
         bodies: [Elastic; 2],
     ) -> FilmContact {
-        let [a, b] = hertz.semi_axes(1.0);
-        FilmContact::new(geometry.sum_of_rolling_curvatures(side), a / b, bodies)
+        let axes = hertz.semi_axes(1.0);
+        let ellipticity = axes.groove / axes.rolling;
+        FilmContact::new(geometry.sum_of_rolling_curvatures(side), ellipticity, bodies)
     }
 
     /// Film at a mean surface speed, m/s, and a load, N; None without motion or load.
@@ -120,9 +121,9 @@ mod tests {
             poisson_ratio: 0.3,
         };
         Side::BOTH.map(|side| {
-            let [a, b] = HertzContact::new(&geometry, side, steel, steel).semi_axes(1.0);
+            let axes = HertzContact::new(&geometry, side, steel, steel).semi_axes(1.0);
             let rolling = 2.0 / geometry.ball_diameter + geometry.rolling_curvature(side);
-            let contact = FilmContact::new(rolling, a / b, [steel; 2]);
+            let contact = FilmContact::new(rolling, axes.groove / axes.rolling, [steel; 2]);
             let oil = Lubricant {
                 viscosity: 0.04,
                 pressure_coefficient: 2.2e-8,

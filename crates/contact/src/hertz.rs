@@ -15,6 +15,7 @@
 
 use crate::elliptic::complete_elliptic;
 use crate::geometry::{BearingGeometry, Side};
+use crate::semi_axes::SemiAxes;
 
 /// Elastic constants of one body.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -37,10 +38,8 @@ impl Elastic {
 pub struct HertzContact {
     /// Q = stiffness * approach^1.5, N/m^1.5.
     pub stiffness: f64,
-    /// Semi-axis along the groove over the cube root of the load, m/N^(1/3).
-    axis_groove: f64,
-    /// Semi-axis in the rolling direction over the cube root of the load, m/N^(1/3).
-    axis_rolling: f64,
+    /// Semi-axes under 1 N, m: they grow with the cube root of the load.
+    unit_axes: SemiAxes,
 }
 
 impl HertzContact {
@@ -63,15 +62,14 @@ impl HertzContact {
         let major = (3.0 * ratio_squared * e_integral / (pi * modulus * sum)).cbrt();
         let minor = major / ratio_squared.sqrt();
         let approach = 3.0 * k_integral / (2.0 * pi * major * modulus);
-        let (axis_groove, axis_rolling) = if across <= rolling {
-            (major, minor)
+        let unit_axes = if across <= rolling {
+            SemiAxes::new(major, minor)
         } else {
-            (minor, major)
+            SemiAxes::new(minor, major)
         };
         HertzContact {
             stiffness: approach.powf(-1.5),
-            axis_groove,
-            axis_rolling,
+            unit_axes,
         }
     }
 
@@ -80,10 +78,10 @@ impl HertzContact {
         HertzContact { stiffness, ..self }
     }
 
-    /// Semi-axes [along the groove, rolling direction] under the load `force` in N, m.
-    pub fn semi_axes(&self, force: f64) -> [f64; 2] {
+    /// Semi-axes under the load `force` in N, m.
+    pub fn semi_axes(&self, force: f64) -> SemiAxes {
         let root = force.max(0.0).cbrt();
-        [self.axis_groove * root, self.axis_rolling * root]
+        self.unit_axes.map(|axis| axis * root)
     }
 
     /// Peak pressure under the load `force` in N, Pa.
@@ -91,8 +89,8 @@ impl HertzContact {
         if force <= 0.0 {
             return 0.0;
         }
-        let [a, b] = self.semi_axes(force);
-        1.5 * force / (std::f64::consts::PI * a * b)
+        let axes = self.semi_axes(force);
+        1.5 * force / (std::f64::consts::PI * axes.groove * axes.rolling)
     }
 }
 
@@ -140,10 +138,10 @@ mod tests {
         let contact = HertzContact::from_curvatures(1.0 / radius, 1.0 / radius, modulus);
         let a = (3.0 * load * radius / (4.0 * modulus)).cbrt();
         let approach = a * a / radius;
-        let [along, rolling] = contact.semi_axes(load);
+        let SemiAxes { groove, rolling } = contact.semi_axes(load);
         assert!(
-            (along / a - 1.0).abs() < 1e-7 && (rolling / a - 1.0).abs() < 1e-7,
-            "{along} {rolling} {a}"
+            (groove / a - 1.0).abs() < 1e-7 && (rolling / a - 1.0).abs() < 1e-7,
+            "{groove} {rolling} {a}"
         );
         assert!((contact.stiffness * approach.powf(1.5) / load - 1.0).abs() < 1e-7);
         let pressure = 1.5 * load / (std::f64::consts::PI * a * a);
@@ -197,10 +195,10 @@ mod tests {
     #[test]
     fn pressure_integrates_to_the_load() {
         let contact = HertzContact::from_curvatures(14.0, 260.0, 113.7e9);
-        let [a, b] = contact.semi_axes(500.0);
-        let force = 2.0 / 3.0 * contact.peak_pressure(500.0) * std::f64::consts::PI * a * b;
+        let SemiAxes { groove, rolling } = contact.semi_axes(500.0);
+        let force = 2.0 / 3.0 * contact.peak_pressure(500.0) * std::f64::consts::PI * groove * rolling;
         assert!((force - 500.0).abs() < 1e-9);
-        assert!(a > b, "the long axis lies along the groove");
+        assert!(groove > rolling, "the long axis lies along the groove");
     }
 
     /// Wrong: swapping the two principal directions would change more than the names of the axes.
@@ -209,6 +207,6 @@ mod tests {
         let one = HertzContact::from_curvatures(14.0, 260.0, 1e11);
         let two = HertzContact::from_curvatures(260.0, 14.0, 1e11);
         assert_eq!(one.stiffness, two.stiffness);
-        assert_eq!(one.semi_axes(10.0)[0], two.semi_axes(10.0)[1]);
+        assert_eq!(one.semi_axes(10.0).groove, two.semi_axes(10.0).rolling);
     }
 }

@@ -31,6 +31,7 @@ use rayon::prelude::*;
 
 use crate::halfspace::{CurvatureRules, CurvedSurface, EllipticPressure};
 use crate::raceway::Groove;
+use crate::semi_axes::SemiAxes;
 use crate::unwrap::unwrap_near;
 
 /// Bins of azimuth in which points are looked up.
@@ -45,12 +46,12 @@ pub struct LoadedPatch {
     pub force: f64,
     /// Groove angle of the contact, rad.
     pub angle: f64,
-    /// Semi-axes of the Hertz ellipse [along the groove, rolling direction], m.
-    pub semi_axes: [f64; 2],
+    /// Semi-axes of the Hertz ellipse, m.
+    pub semi_axes: SemiAxes,
     /// Groove angle of the spread patch, rad.
     pub patch_angle: f64,
     /// Semi-axes of the spread patch, m.
-    pub patch_axes: [f64; 2],
+    pub patch_axes: SemiAxes,
 }
 
 /// A point in the coordinates of a raceway.
@@ -176,11 +177,10 @@ impl NearField {
 
     /// Correction of one contact at the points within its reach, in the axes of the mesh.
     fn of_contact(&self, contact: &LoadedPatch, instead: InPlace) -> Vec<(u32, [f64; 6])> {
-        let smallest = contact.semi_axes[0].min(contact.semi_axes[1]);
-        if contact.force <= 0.0 || smallest <= 0.0 {
+        if contact.force <= 0.0 || contact.semi_axes.minor() <= 0.0 {
             return Vec::new();
         }
-        let distance = self.reach * contact.patch_axes[0].max(contact.patch_axes[1]);
+        let distance = self.reach * contact.patch_axes.major();
         let (mut near, mut hertz_places, mut patch_places) = (Vec::new(), Vec::new(), Vec::new());
         for &index in self.candidates(contact.azimuth, distance) {
             let point = &self.points[index as usize];
@@ -195,7 +195,7 @@ impl NearField {
         }
         let surface = CurvedSurface::new(&self.rules, self.curvatures(contact.angle));
         let hertz_peak = self.pressure(contact, contact.semi_axes).peak;
-        let field = |semi_axes: [f64; 2], places: &[[f64; 3]]| {
+        let field = |semi_axes: SemiAxes, places: &[[f64; 3]]| {
             let pressure = self.pressure(contact, semi_axes);
             let mut stress = vec![[0.0; 6]; places.len()];
             pressure.stresses(places, &mut stress);
@@ -217,7 +217,7 @@ impl NearField {
             .collect()
     }
 
-    fn pressure(&self, contact: &LoadedPatch, semi_axes: [f64; 2]) -> EllipticPressure {
+    fn pressure(&self, contact: &LoadedPatch, semi_axes: SemiAxes) -> EllipticPressure {
         EllipticPressure::of_force(contact.force, semi_axes, self.poisson_ratio)
     }
 

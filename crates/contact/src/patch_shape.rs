@@ -2,6 +2,7 @@
 
 use crate::error::ContactError;
 use crate::raceway::RacewaySurface;
+use crate::semi_axes::SemiAxes;
 
 /// Share of the way to the groove's edge that a patch may fill.
 const EDGE_SHARE: f64 = 0.98;
@@ -13,8 +14,8 @@ pub struct PatchShape {
     pub azimuth: f64,
     /// Contact angle, rad.
     pub angle: f64,
-    /// Semi-axes [along the groove, rolling direction], m.
-    pub semi_axes: [f64; 2],
+    /// Semi-axes, m.
+    pub semi_axes: SemiAxes,
     /// The Hertz ellipse reaches beyond the edge of the groove: edge contact, Hertz theory does not hold.
     pub truncated: bool,
 }
@@ -35,17 +36,20 @@ impl PatchShape {
         surface: &RacewaySurface,
         azimuth: f64,
         angle: f64,
-        hertz_axes: [f64; 2],
+        hertz_axes: SemiAxes,
         least: LeastSize,
     ) -> Result<PatchShape, ContactError> {
         let spacing = surface.spacing(surface.locate(azimuth, angle)?);
         let room = EDGE_SHARE * surface.rim_distance(angle);
-        let along = hertz_axes[0].max(least.spacings * spacing[0]).min(room);
-        let rolling = hertz_axes[1].max(least.spacings * spacing[1]).max(least.rolling);
+        let groove = hertz_axes.groove.max(least.spacings * spacing[0]).min(room);
+        let rolling = hertz_axes
+            .rolling
+            .max(least.spacings * spacing[1])
+            .max(least.rolling);
         Ok(PatchShape {
             azimuth,
             angle,
-            semi_axes: [along, rolling],
+            semi_axes: SemiAxes::new(groove, rolling),
             truncated: is_truncated(surface, angle, hertz_axes),
         })
     }
@@ -53,6 +57,6 @@ impl PatchShape {
 
 /// Whether a Hertz ellipse of semi-axes `hertz_axes`, m, at a contact angle, rad, reaches beyond the edge of the
 /// groove.
-pub fn is_truncated(surface: &RacewaySurface, angle: f64, hertz_axes: [f64; 2]) -> bool {
-    hertz_axes[0] > EDGE_SHARE * surface.rim_distance(angle)
+pub fn is_truncated(surface: &RacewaySurface, angle: f64, hertz_axes: SemiAxes) -> bool {
+    hertz_axes.groove > EDGE_SHARE * surface.rim_distance(angle)
 }

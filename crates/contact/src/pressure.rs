@@ -126,15 +126,15 @@ fn integrate<const N: usize>(
     let groove = &surface.groove;
     let centre = surface.locate(patch.azimuth, patch.angle)?;
     let spacing = surface.spacing(centre);
-    let spacings = (patch.semi_axes[0] / spacing[0]).max(patch.semi_axes[1] / spacing[1]);
+    let spacings = (patch.semi_axes.groove / spacing[0]).max(patch.semi_axes.rolling / spacing[1]);
     let middle = unwrap_near(patch.azimuth, 0.0);
     let mut sums: Vec<FacetSums<N>> = Vec::new();
     // Number in the sums of each facet, counted from 1.
     let mut numbers = vec![0; surface.n_facets()];
     let mut facet = centre.facet;
     for (point, weight) in rule.points(spacings) {
-        let angle = patch.angle + patch.semi_axes[0] * point[0] / groove.groove_radius;
-        let azimuth = middle + patch.semi_axes[1] * point[1] / groove.radius(angle);
+        let angle = patch.angle + patch.semi_axes.groove * point[0] / groove.groove_radius;
+        let azimuth = middle + patch.semi_axes.rolling * point[1] / groove.radius(angle);
         let location = surface.locate_near(facet, azimuth, angle)?;
         facet = location.facet;
         if numbers[facet] == 0 {

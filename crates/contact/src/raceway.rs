@@ -5,6 +5,8 @@
 //! the raceway is covered without gaps and interpolation is continuous. Search is over a uniform grid of
 //! bins: constant time per point. The groove angle is 0 at the groove bottom and positive as contact angles are.
 
+use std::ops::RangeInclusive;
+
 use fem::facet;
 use mesh::{Facet, FacetKind, Mesh};
 
@@ -105,7 +107,7 @@ pub struct RacewaySurface {
     maps: Vec<Option<Affine>>,
     neighbours: Neighbours,
     /// Lowest and highest groove angle, rad.
-    pub angle_range: [f64; 2],
+    pub angle_range: RangeInclusive<f64>,
     bins: Bins,
 }
 
@@ -127,12 +129,12 @@ impl RacewaySurface {
             }
         }
         let angles = coordinates.iter().map(|c: &[f64; 2]| c[1]);
-        let angle_range = angles.fold([f64::INFINITY, f64::NEG_INFINITY], |r, a| {
+        let [low, high] = angles.fold([f64::INFINITY, f64::NEG_INFINITY], |r, a| {
             [r[0].min(a), r[1].max(a)]
         });
         let spacing = node_spacing(&nodes, &coordinates, kind, &groove, mesh.n_nodes());
         let boxes: Vec<_> = coordinates.chunks(n).map(grown_box).collect();
-        let bins = Bins::new(&boxes, angle_range);
+        let bins = Bins::new(&boxes, [low, high]);
         let maps = coordinates.chunks(n).map(|c| Affine::new(kind, c)).collect();
         let neighbours = Neighbours::new(kind, &nodes);
         RacewaySurface {
@@ -144,15 +146,15 @@ impl RacewaySurface {
             boxes,
             maps,
             neighbours,
-            angle_range,
+            angle_range: low..=high,
             bins,
         }
     }
 
     /// Distance along the groove from groove angle `angle` to the nearer rim, m; negative beyond it.
     pub fn rim_distance(&self, angle: f64) -> f64 {
-        let [low, high] = self.angle_range;
-        self.groove.groove_radius * (angle - low).min(high - angle)
+        let to_rims = (angle - self.angle_range.start()).min(self.angle_range.end() - angle);
+        self.groove.groove_radius * to_rims
     }
 
     /// Number of facets.

@@ -115,7 +115,7 @@ impl LegendreSeries {
     /// By how much less than a half-space the contact yields, m/N.
     fn own(&self, contact: &HertzContact) -> f64 {
         let force = (PRESSURE / contact.peak_pressure(1.0)).powi(3);
-        let [c, d] = contact.semi_axes(force);
+        let [c, d] = contact.semi_axes(force).into();
         let half = 0.25 * (c + d) / self.radius;
         let logarithm = half.ln() + half.ln_1p() + MEAN_LOGARITHM + GROWTH;
         let sum: f64 = self.rest.iter().rev().sum();

@@ -59,7 +59,7 @@ pub struct StripLaw {
 impl StripLaw {
     /// Strips with the ellipse and the stiffness of a Hertz contact.
     pub fn new(hertz: &HertzContact, groove_radius: f64) -> StripLaw {
-        let axis = hertz.semi_axes(1.0)[0];
+        let axis = hertz.semi_axes(1.0).groove;
         let power = hertz.stiffness.powf(2.0 / 3.0);
         StripLaw {
             stiffness: hertz.stiffness,

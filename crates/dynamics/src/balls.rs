@@ -1,6 +1,6 @@
 //! What is reported of every ball.
 
-use contact::{Meridian, Side};
+use contact::{Meridian, SemiAxes, Side};
 use serde::Serialize;
 
 use crate::surfaces::EllipseKind;
@@ -14,8 +14,8 @@ pub struct ContactResult {
     pub contact_angle_rad: f64,
     /// Hertz approach, m; negative is a gap.
     pub approach_m: f64,
-    /// Semi-axes of the Hertz ellipse [along the groove, rolling direction], m.
-    pub semi_axes_m: [f64; 2],
+    /// Semi-axes of the Hertz ellipse, m.
+    pub semi_axes_m: SemiAxes,
     /// Peak Hertz pressure, Pa.
     pub peak_pressure_pa: f64,
     /// Whether the ellipse, and with it pressure and stress, is Hertz's; None: the raceway has no strips, and it is.

@@ -17,7 +17,7 @@ use crate::interactions::free_contact::{Carrier, FreeContacts};
 use crate::interactions::raceway_contact::{GrooveBodies, Means, RacewayContacts, Site, SiteState};
 use crate::interactions::seat_spring::{Seat, SeatSpring};
 use crate::model::Model;
-use crate::system::{ElasticPorts, FiniteMotion, Interaction, Interval, Lengths, Lumped, System};
+use crate::system::{ElasticPorts, Interaction, Interval, Lengths, Lumped, System};
 
 /// Number of the shaft among the lumped bodies.
 pub const SHAFT: usize = 0;
@@ -235,11 +235,6 @@ impl BearingParts {
     /// l of every contact at start and end, `[2 n_sites]`.
     pub fn reaches(&self, x: &[f64]) -> [Vec<f64>; 2] {
         self.system().lengths_at(CONTACTS, x)
-    }
-
-    /// Finite motions of the inner grooves, by ball.
-    pub fn finite_motions(&self, x: &[f64]) -> Vec<Option<FiniteMotion>> {
-        self.system().finite_motions(CONTACTS, x)
     }
 
     /// Contacts at the end.

@@ -5,7 +5,6 @@
 //! capped: any start is safe. Cost: a dense factorisation of 2 n_balls (1 + rings) + 5 unknowns per iteration.
 
 use contact::{BearingGeometry, Meridian, Side};
-use dense::DenseError;
 use timer::SharedLaps;
 
 use crate::bearing::{BearingParts, SHAFT};
@@ -83,7 +82,8 @@ pub fn minimise(
         keeps_factors: false,
         blocks: &[],
         scales: Some(&lengths),
-        proximal: proximal(parts, scales),
+        // A trace of the contacts' and more than what a growing ball load takes away.
+        proximal: PROXIMAL * scales.stiffness + 2.0 * largest_slope(parts),
         longest_step: scales.step,
         search: Shortening::Energy,
         watch: &|x| {
@@ -182,7 +182,8 @@ pub fn check_held(
         hessian[n * i + i] += PROXIMAL * scales.stiffness + of_load;
     }
     // Stiffness of the shaft on its balls and rings.
-    let condensation = Condensation::new(n, m, &hessian).map_err(dense_error)?;
+    let condensation = Condensation::new(n, m, &hessian);
+    let condensation = condensation.map_err(|source| DynamicsError::ContactSystem { source })?;
     let mut stiffness = condensation.apply(&hessian);
     let scale = scales.stiffness;
     for i in 0..m {
@@ -203,18 +204,9 @@ pub fn check_held(
     Ok(())
 }
 
-/// Proximal stiffness, N/m: a trace of the contacts' and more than what a growing ball load takes away.
-fn proximal(parts: &BearingParts, scales: SearchScales) -> f64 {
-    PROXIMAL * scales.stiffness + 2.0 * largest_slope(parts)
-}
-
 fn largest_slope(parts: &BearingParts) -> f64 {
     let slopes = parts.balls.iter().map(|ball| ball.dofs[0].load_slope);
     slopes.fold(0.0, f64::max)
-}
-
-fn dense_error(source: DenseError) -> DynamicsError {
-    DynamicsError::ContactSystem { source }
 }
 
 /// Unloaded balls rest midway between their raceways: those without a load of their own that are not squeezed between

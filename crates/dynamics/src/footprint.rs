@@ -1,11 +1,13 @@
 //! Where a contact force acts on a flexible ring: a patch on the torus, or one facet of the mesh.
 
+use std::ops::RangeInclusive;
 use std::sync::Arc;
 
 use contact::facets::FacetContact;
 use contact::patch_shape::PatchShape;
 use contact::{
-    ContactError, FacetSurface, Groove, Meridian, NodalWeights, Patch, RacewaySurface, Side, Unevenness,
+    ContactError, FacetSurface, Groove, Meridian, NodalWeights, Patch, RacewaySurface, SemiAxes, Side,
+    Unevenness,
 };
 use mesh::NodePositions;
 use rayon::prelude::*;
@@ -36,18 +38,17 @@ pub struct Footprint {
     /// Nodal weights.
     pub weights: NodalWeights,
     /// Semi-axes of the spread patch, m; None on a facet.
-    pub semi_axes: Option<[f64; 2]>,
+    pub semi_axes: Option<SemiAxes>,
     /// The Hertz ellipse reaches beyond the groove.
     pub truncated: bool,
     /// Groove angles from rim to rim, rad.
-    pub groove: [f64; 2],
+    pub groove: RangeInclusive<f64>,
 }
 
 impl Footprint {
     /// Whether an ellipse reaches beyond the groove, or a contact at this angle, rad, stands beyond its rim.
     pub fn is_beyond(&self, angle: f64) -> bool {
-        let [low, high] = self.groove;
-        self.truncated || !(low..=high).contains(&angle)
+        self.truncated || !self.groove.contains(&angle)
     }
 }
 
@@ -105,7 +106,7 @@ fn place_patch(
         weights: patch.weights,
         semi_axes: Some(shape.semi_axes),
         truncated: shape.truncated,
-        groove: raceway.surface.angle_range,
+        groove: raceway.surface.angle_range.clone(),
     })
 }
 
@@ -132,7 +133,7 @@ pub fn sizes(forces: &[Meridian]) -> impl Iterator<Item = f64> + Clone {
 /// The contact angle if it is on the groove, else the nearest place inside the rim: unloaded balls may be anywhere, and
 /// loaded ones on their way to equilibrium.
 pub fn on_groove(surface: &RacewaySurface, angle: f64, loaded: bool) -> f64 {
-    let [low, high] = surface.angle_range;
+    let (low, high) = surface.angle_range.clone().into_inner();
     if loaded && low < angle && angle < high {
         return angle;
     }
@@ -196,7 +197,7 @@ pub fn require_in_groove(site: &Site, angle: f64) -> Result<(), DynamicsError> {
 
 /// Fails when a contact angle lies beyond the rim of the groove.
 pub fn require_on_groove(surface: &RacewaySurface, ball: usize, angle: f64) -> Result<(), DynamicsError> {
-    let [low, high] = surface.angle_range;
+    let (low, high) = surface.angle_range.clone().into_inner();
     if low < angle && angle < high {
         return Ok(());
     }
@@ -222,7 +223,7 @@ fn place_facet(
 ) -> Result<Footprint, DynamicsError> {
     let search = FacetSearch::new(model, ring, raceway, site);
     if site.unevenness.is_none() {
-        site.unevenness = Some(Arc::new(search.unevenness(raceway.surface.angle_range)?));
+        site.unevenness = Some(Arc::new(search.unevenness(&raceway.surface)?));
     }
     // The rim itself is left out: a foot point beyond it is on no facet.
     let contact = search.foot(on_groove(&raceway.surface, angle, false))?;
@@ -231,8 +232,8 @@ fn place_facet(
     Ok(Footprint {
         weights,
         semi_axes: None,
-        truncated: hertz[0] > raceway.surface.rim_distance(angle),
-        groove: raceway.surface.angle_range,
+        truncated: hertz.groove > raceway.surface.rim_distance(angle),
+        groove: raceway.surface.angle_range.clone(),
     })
 }
 
@@ -283,7 +284,8 @@ impl<'a> FacetSearch<'a> {
             })
     }
 
-    fn unevenness(&self, [low, high]: [f64; 2]) -> Result<Unevenness, DynamicsError> {
+    fn unevenness(&self, surface: &RacewaySurface) -> Result<Unevenness, DynamicsError> {
+        let (low, high) = surface.angle_range.clone().into_inner();
         let rim = RIM_SHARE * (high - low);
         let range = [low + rim, high - rim];
         let step = (range[1] - range[0]) / (FACET_SAMPLES - 1) as f64;

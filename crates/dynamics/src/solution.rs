@@ -85,7 +85,7 @@ impl StaticSolution {
         let states = parts.states_at(&u);
         let forces = on_rings(&states);
         let (residual, reaction) = shaft_balance(parts, &u, &forces);
-        let finite = parts.finite_motions(&parts.unknowns(&u));
+        let finite = parts.system().finite_motions(CONTACTS, &parts.unknowns(&u));
         // Loads on the rings, through their elastic motion: on their bodies and, besides the normal forces, at
         // contacts.
         let ring_load_work = body_work(&case.loads, &rings)
@@ -104,10 +104,7 @@ impl StaticSolution {
         }
         let load_work = ball_work(parts, &u)
             + dot(&parts.shaft_load(), &u.shaft)
-            + dot(
-                &parts.shaft.tilted_moments(Interval::Rest, &u.shaft),
-                &u.shaft[3..],
-            )
+            + dot(&parts.shaft.loads_by_tilt(Interval::Rest, &u.shaft), &u.shaft)
             + ring_load_work
             + seat_work(parts, &u)
             + finite_load;
@@ -163,14 +160,6 @@ impl StaticSolution {
         };
         let feet = self.footprints[side.index()].iter().enumerate();
         feet.filter_map(patch).collect()
-    }
-
-    /// Semi-axes of the spread patches of one side, m, by ball; empty for a rigid ring or facets.
-    pub fn patch_axes(&self, side: Side) -> Vec<[f64; 2]> {
-        self.footprints[side.index()]
-            .iter()
-            .filter_map(|f| f.semi_axes)
-            .collect()
     }
 }
 
@@ -383,7 +372,7 @@ fn edge_warnings(
             None => {
                 let foot = footprints[side.index()].get(*ball);
                 let contact = balls[*ball].contact(side);
-                let reach = contact.semi_axes_m[0] / model.geometry.groove_radius(side);
+                let reach = contact.semi_axes_m.groove / model.geometry.groove_radius(side);
                 foot.is_some_and(|foot| foot.is_beyond(contact.contact_angle_rad))
                     || model.shoulders.is_beyond(side, contact.contact_angle_rad, reach)
             }
@@ -421,7 +410,7 @@ fn ball_results(
             None => state.force.force,
         };
         let semi_axes = hertz.semi_axes(force);
-        let of_strips = |strips: &Strips| strips.bearing(state.force.approach, state.angle, semi_axes.into());
+        let of_strips = |strips: &Strips| strips.bearing(state.force.approach, state.angle, semi_axes);
         let bearing = site.strips.as_ref().map(of_strips);
         let peak = bearing.as_ref().map_or(1.0, |bearing| bearing.peak);
         ContactResult {

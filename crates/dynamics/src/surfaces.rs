@@ -4,7 +4,9 @@ use std::collections::BTreeMap;
 use std::ops::RangeInclusive;
 use std::sync::Arc;
 
-use contact::{BallArc, BallSurface, BySide, SeenMeridian, Side, StripLine, StripSurface, WornLine};
+use contact::{
+    BallArc, BallSurface, BySide, SeenMeridian, SemiAxes, Side, StripLine, StripSurface, WornLine,
+};
 use serde::Serialize;
 
 use crate::interactions::traction::{PatchPoints, PressureLine};
@@ -267,15 +269,16 @@ impl Strips {
     }
 
     /// How it carries its load, at an approach, m, and a contact angle, rad, beside Hertz's ellipse of the same force
-    /// with these semi-axes across and along the track, m.
-    pub fn bearing(&self, approach: f64, angle: f64, (half_width, rolling): (f64, f64)) -> StripBearing {
+    /// with these semi-axes.
+    pub fn bearing(&self, approach: f64, angle: f64, axes: SemiAxes) -> StripBearing {
+        let half_width = axes.groove;
         let (law, line) = (&self.surface.law, self.line());
         let extent = law.extent(&line, approach, angle).filter(|_| half_width > 0.0);
         let Some(extent) = extent else {
             return StripBearing::HERTZ;
         };
         let mut range = extent.missing;
-        for place in self.ends_of_ellipse(angle, rolling) {
+        for place in self.ends_of_ellipse(angle, axes.rolling) {
             let [low, high] = law.missing_within(&self.moved(place).line(), angle, extent.ends);
             range = [range[0].min(low), range[1].max(high)];
         }

@@ -4,7 +4,7 @@ mod support;
 
 use contact::Side;
 use dynamics::costs::of_effects;
-use dynamics::effects::{self, AxialForce, Effect, Gravity, Now};
+use dynamics::effects::{self, AxialForce, Effect, Gravity, Now, RingDamping};
 use dynamics::interactions::contact_damping::ContactDamping;
 use dynamics::kinematics::Speed;
 use dynamics::motion::{Motion, MotionSettings, StepCache};
@@ -88,7 +88,10 @@ fn motion_holds_three_matrices_per_flexible_ring() {
             coefficient: 50.0,
             full_approach: 1e-6,
         }),
-        rayleigh: [100.0, 1e-7],
+        rayleigh: RingDamping {
+            mass: 100.0,
+            stiffness: 1e-7,
+        },
         ..settings()
     };
     assert_eq!(counted(&flexible(Vec::new()), damped), both);
@@ -173,7 +176,10 @@ fn dampings_are_charged_in_a_motion() {
             coefficient: 50.0,
             full_approach: 1e-6,
         }),
-        rayleigh: [100.0, 1e-7],
+        rayleigh: RingDamping {
+            mass: 100.0,
+            stiffness: 1e-7,
+        },
         ..settings()
     };
     let charged = lines(damped);

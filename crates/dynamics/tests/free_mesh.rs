@@ -8,7 +8,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use contact::Side;
-use dynamics::effects::FrameRotation;
+use dynamics::effects::{FrameRotation, RingDamping};
 use dynamics::kinematics::Speed;
 use dynamics::motion::{Motion, MotionSettings, MotionState, StepCache};
 use dynamics::{Backend, ContactMode, Hold, Model, Sectors};
@@ -54,7 +54,10 @@ fn steps_of_a_free_mesh_are_those_of_sectors_and_have_the_same_bits_again() {
     let mut model = bearing();
     let start = equilibrium(&model);
     let settings = || MotionSettings {
-        rayleigh: [100.0, 1e-8],
+        rayleigh: RingDamping {
+            mass: 100.0,
+            stiffness: 1e-8,
+        },
         ..MotionSettings::conserving(1e-5, Speed::constant(SPEED))
     };
     let of = |threads: usize, forget: bool| {

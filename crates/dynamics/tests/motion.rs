@@ -2,6 +2,7 @@
 
 mod support;
 
+use dynamics::effects::RingDamping;
 use dynamics::interactions::contact_damping::ContactDamping;
 use dynamics::interactions::discrete_gradient::ContactScheme;
 use dynamics::kinematics::Speed;
@@ -175,7 +176,10 @@ fn damped_motion_loses_what_the_ledger_says() {
     };
     let damped = MotionSettings {
         contact_damping: Some(damping),
-        rayleigh: [100.0, 1e-7],
+        rayleigh: RingDamping {
+            mass: 100.0,
+            stiffness: 1e-7,
+        },
         ..settings(1e-5)
     };
     let states = run(&loaded, &solution, damped, 100);

@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 
 use contact::patch_shape::PatchShape;
 use contact::quadrature::PressureRule;
-use contact::{Patch, RacewaySurface, Side};
+use contact::{Patch, RacewaySurface, SemiAxes, Side};
 use dynamics::model::elastic;
 use dynamics::statics::StaticRing;
 use dynamics::{Backend, ContactMode, Hold, RingModel, Sectors, SharedStress, StressPlaces};
@@ -20,7 +20,7 @@ const LEVEL: Level = Level::hex8(54, 6, 1, 2);
 
 fn patch(ring: &RingModel, azimuth: f64, angle: f64) -> Patch {
     let surface = RacewaySurface::new(&ring.mesh, ring.mesh.group("raceway"), ring.groove);
-    let shape = PatchShape::new(&surface, azimuth, angle, [1e-3, 1e-4], LEAST_PATCH).unwrap();
+    let shape = PatchShape::new(&surface, azimuth, angle, SemiAxes::new(1e-3, 1e-4), LEAST_PATCH).unwrap();
     Patch::new(
         &surface,
         &ring.mesh.nodes,
@@ -96,7 +96,8 @@ fn slopes_are_the_growth_of_the_patches_motion_with_the_azimuth() {
             let surface = RacewaySurface::new(&ring.mesh, ring.mesh.group("raceway"), ring.groove);
             let (nodes, rule, steel) = (&ring.mesh.nodes, PressureRule::new(), elastic(&ring.material));
             for (azimuth, angle) in [(0.3f64, 0.35), (2.0, -0.2), (-3.1, 0.0)] {
-                let shape = PatchShape::new(&surface, azimuth, angle, [1e-3, 1e-4], LEAST_PATCH).unwrap();
+                let shape = PatchShape::new(&surface, azimuth, angle, SemiAxes::new(1e-3, 1e-4), LEAST_PATCH)
+                    .unwrap();
                 let free = |shape| Patch::of_free_ball(&surface, nodes, &rule, shape, steel).unwrap();
                 let (patch, [traction, slope]) = free(shape);
                 assert_eq!(
@@ -244,7 +245,7 @@ fn a_clamped_bore_does_not_move_and_is_stiffer() {
 fn places_off_the_raceway_are_errors() {
     let ring = ring(Side::Inner, LEVEL, Hold::Clamped);
     let surface = RacewaySurface::new(&ring.mesh, ring.mesh.group("raceway"), ring.groove);
-    let error = PatchShape::new(&surface, 0.1, 1.5, [1e-3, 1e-4], LEAST_PATCH)
+    let error = PatchShape::new(&surface, 0.1, 1.5, SemiAxes::new(1e-3, 1e-4), LEAST_PATCH)
         .unwrap_err()
         .to_string();
     assert!(
@@ -262,12 +263,12 @@ fn places_off_the_raceway_are_errors() {
     );
     // Edge contact: the Hertz ellipse does not fit between the contact and the rim.
     assert!(
-        PatchShape::new(&surface, 0.1, 0.9, [3e-3, 1e-4], LEAST_PATCH)
+        PatchShape::new(&surface, 0.1, 0.9, SemiAxes::new(3e-3, 1e-4), LEAST_PATCH)
             .unwrap()
             .truncated
     );
     assert!(
-        !PatchShape::new(&surface, 0.1, 0.3, [1e-3, 1e-4], LEAST_PATCH)
+        !PatchShape::new(&surface, 0.1, 0.3, SemiAxes::new(1e-3, 1e-4), LEAST_PATCH)
             .unwrap()
             .truncated
     );

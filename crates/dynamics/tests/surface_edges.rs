@@ -26,7 +26,7 @@ fn with_outer_strips(mut model: Model, shoulders: Option<RangeInclusive<f64>>, p
 fn cut(half_widths: f64) -> Model {
     let case = Case::axial(2000.0);
     let before = equilibrium(&case.rigid()).balls[0].outer;
-    let shoulder = before.contact_angle_rad + half_widths * before.semi_axes_m[0] / 4.75e-3;
+    let shoulder = before.contact_angle_rad + half_widths * before.semi_axes_m.groove / 4.75e-3;
     let mut model = with_outer_strips(case.rigid(), Some(-0.6..=shoulder), &Profiles::default());
     model.shaft_mass = 2.0;
     model

@@ -62,7 +62,7 @@ fn truncated_ellipses_carry_the_load_by_their_closed_forms() {
     let case = Case::axial(2000.0);
     let smooth = equilibrium(&case.rigid());
     let before = &smooth.balls[0].outer;
-    let shoulder = before.contact_angle_rad + 0.8 * before.semi_axes_m[0] / 4.725e-3;
+    let shoulder = before.contact_angle_rad + 0.8 * before.semi_axes_m.groove / 4.725e-3;
     let model = with_strips(
         case.rigid(),
         Side::Outer,
@@ -340,7 +340,8 @@ fn the_places_of_a_passage_do_not_depend_on_the_load() {
     let all = [1000.0, 2000.0, 4000.0].map(|load| slow_passage(length, load));
     let half_width = equilibrium(&Case::axial(1000.0).rigid()).balls[0]
         .outer
-        .semi_axes_m[1];
+        .semi_axes_m
+        .rolling;
     for (places, share) in all {
         assert!(share > 0.05, "the ball stays loaded: {share}");
         for i in 0..3 {

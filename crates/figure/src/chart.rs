@@ -13,7 +13,7 @@ use crate::page::{GAP, LINE_WIDTH, Rect, TEXT, TICK, TITLE};
 use crate::surface::draw::draw_surface;
 use crate::text::{self, FONT, FONTS, LINE, Weight};
 use crate::ticked::Ticked;
-use crate::{Figure, FigureError, Look};
+use crate::{DataPoint, Figure, FigureError, Look};
 
 /// How often a figure grows by a quarter when its labels find no place.
 const GROWTHS: u32 = 6;
@@ -175,7 +175,8 @@ fn obstacles(figure: &Figure, pen: &Pen) -> (Vec<[f64; 2]>, Vec<[[f64; 2]; 2]>) 
             lines.extend(pairs);
         }
         let errors = series.points.iter().zip(series.errors.iter().flatten());
-        lines.extend(errors.filter_map(|(p, e)| Some([pen.pixel([p[0], e[0]])?, pen.pixel([p[0], e[1]])?])));
+        let ends = |(p, e): (&DataPoint, &[f64; 2])| e.map(|y| pen.pixel(DataPoint::new(p.x, y)));
+        lines.extend(errors.map(ends).filter_map(|[low, high]| Some([low?, high?])));
         if matches!(series.look, Look::Marks | Look::LineAndMarks | Look::Rings) {
             all_marks.extend(pixels.iter().flatten());
         }

@@ -5,7 +5,7 @@ use crate::legend::{self, Legend};
 use crate::page::{GAP, Rect, TEXT, TICK, TITLE};
 use crate::text::{self, LINE, Weight};
 use crate::ticks::Ticks;
-use crate::{Figure, FigureError, Surface};
+use crate::{DataPoint, Figure, FigureError, Surface};
 
 /// Width of the colour bar.
 const BAR: f64 = 16.0;
@@ -106,10 +106,12 @@ fn bar_beside(plot: Rect) -> Rect {
 fn span_of(figure: &Figure, component: usize) -> Result<Span, FigureError> {
     let axis = [&figure.x, &figure.y][component];
     let other = [&figure.y, &figure.x][component];
-    let shown = |p: &&[f64; 2]| axis.place(p[component]).is_some() && other.place(p[1 - component]).is_some();
+    let shown = |p: &&DataPoint| {
+        axis.place(p.along(component)).is_some() && other.place(p.along(1 - component)).is_some()
+    };
     let points = figure.series.iter().flat_map(|series| &series.points);
-    let mut values: Vec<f64> = points.filter(shown).map(|p| p[component]).collect();
-    values.extend(figure.labels.iter().map(|label| label.at[component]));
+    let mut values: Vec<f64> = points.filter(shown).map(|p| p.along(component)).collect();
+    values.extend(figure.labels.iter().map(|label| label.at.along(component)));
     if let Some(surface) = &figure.surface {
         values.extend(surface.places(component));
     }

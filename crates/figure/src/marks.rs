@@ -8,7 +8,7 @@ use crate::legend::{LegendEntry, SAMPLE, style_index};
 use crate::page::{LINE_WIDTH, Rect, TEXT};
 use crate::text::Weight;
 use crate::thin::thin;
-use crate::{Figure, Look, palette};
+use crate::{DataPoint, Figure, Look, palette};
 
 /// Width of the lines of series, units.
 const SERIES_WIDTH: u32 = 16;
@@ -40,13 +40,13 @@ impl<'a> Pen<'a> {
     }
 
     /// Place of a point of the data, pixels; none if the axes have no place for it.
-    pub fn pixel(&self, [x, y]: [f64; 2]) -> Option<[f64; 2]> {
+    pub fn pixel(&self, point: DataPoint) -> Option<[f64; 2]> {
         let (plot, layout) = (self.layout.plot, self.layout);
         let part = |axis: &crate::Axis, [low, high]: [f64; 2], value| {
             Some((axis.place(value)? - low) / (high - low))
         };
-        let x = part(&self.figure.x, layout.x.range, x)?;
-        let y = part(&self.figure.y, layout.y.range, y)?;
+        let x = part(&self.figure.x, layout.x.range, point.x)?;
+        let y = part(&self.figure.y, layout.y.range, point.y)?;
         Some([
             plot.left + x * (plot.right - plot.left),
             plot.bottom - y * (plot.bottom - plot.top),
@@ -59,12 +59,12 @@ impl<'a> Pen<'a> {
     }
 
     /// The same in units of the drawing.
-    fn units(&self, point: [f64; 2]) -> Option<[i32; 2]> {
+    fn units(&self, point: DataPoint) -> Option<[i32; 2]> {
         self.pixel(point).map(units).map(|(x, y)| [x, y])
     }
 
     /// Lines in units of the drawing, broken where a point has no place.
-    fn lines(&self, points: &[[f64; 2]]) -> Vec<Vec<[i32; 2]>> {
+    fn lines(&self, points: &[DataPoint]) -> Vec<Vec<[i32; 2]>> {
         let places: Vec<Option<[i32; 2]>> = points.iter().map(|&p| self.units(p)).collect();
         places
             .split(Option::is_none)
@@ -93,7 +93,8 @@ pub fn draw_band(figure: &Figure, index: usize, pen: &Pen, canvas: &Canvas) -> D
         return Ok(());
     };
     let end = |which: usize| {
-        let points = series.points.iter().zip(band).map(move |(p, b)| [p[0], b[which]]);
+        let points = series.points.iter().zip(band);
+        let points = points.map(move |(p, b)| DataPoint::new(p.x, b[which]));
         points.filter_map(|p| pen.units(p)).map(|[x, y]| (x, y))
     };
     let mut outline: Vec<(i32, i32)> = end(1).collect();
@@ -124,7 +125,8 @@ pub fn draw_series(figure: &Figure, index: usize, pen: &Pen, canvas: &Canvas) ->
     let colour = colour(figure, index);
     if let Some(errors) = &series.errors {
         for (point, [low, high]) in series.points.iter().zip(errors) {
-            draw_error(point[0], *low, *high, colour, pen, canvas)?;
+            let ends = [*low, *high].map(|y| DataPoint::new(point.x, y));
+            draw_error(ends, colour, pen, canvas)?;
         }
     }
     if !matches!(series.look, Look::Marks | Look::Rings) {
@@ -234,8 +236,8 @@ fn dashes(points: &[(i32, i32)]) -> Vec<[(i32, i32); 2]> {
     out
 }
 
-fn draw_error(x: f64, low: f64, high: f64, colour: RGBColor, pen: &Pen, canvas: &Canvas) -> Drawn {
-    let (Some([x, low]), Some([_, high])) = (pen.units([x, low]), pen.units([x, high])) else {
+fn draw_error(ends: [DataPoint; 2], colour: RGBColor, pen: &Pen, canvas: &Canvas) -> Drawn {
+    let [Some([x, low]), Some([_, high])] = ends.map(|end| pen.units(end)) else {
         return Ok(());
     };
     let cap = (3.5 * UNITS) as i32;

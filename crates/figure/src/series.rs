@@ -1,5 +1,7 @@
 //! A series of points and how it looks.
 
+use crate::point::DataPoint;
+
 /// How the points of a series are shown.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Look {
@@ -25,7 +27,7 @@ pub enum Look {
 #[derive(Clone, Debug)]
 pub struct Series {
     pub(crate) name: String,
-    pub(crate) points: Vec<[f64; 2]>,
+    pub(crate) points: Vec<DataPoint>,
     pub(crate) look: Look,
     pub(crate) errors: Option<Vec<[f64; 2]>>,
     pub(crate) band: Option<Vec<[f64; 2]>>,
@@ -34,7 +36,7 @@ pub struct Series {
 
 impl Series {
     /// A series.
-    pub fn new(name: impl Into<String>, look: Look, points: Vec<[f64; 2]>) -> Series {
+    pub fn new(name: impl Into<String>, look: Look, points: Vec<DataPoint>) -> Series {
         Series {
             name: name.into(),
             points,
@@ -46,12 +48,12 @@ impl Series {
     }
 
     /// A line.
-    pub fn line(name: impl Into<String>, points: Vec<[f64; 2]>) -> Series {
+    pub fn line(name: impl Into<String>, points: Vec<DataPoint>) -> Series {
         Series::new(name, Look::Line, points)
     }
 
     /// A line with marks.
-    pub fn line_and_marks(name: impl Into<String>, points: Vec<[f64; 2]>) -> Series {
+    pub fn line_and_marks(name: impl Into<String>, points: Vec<DataPoint>) -> Series {
         Series::new(name, Look::LineAndMarks, points)
     }
 
@@ -66,7 +68,11 @@ impl Series {
                 .zip(&above)
                 .map(|(low, high)| [*low, *high])
                 .collect();
-            let points = places.iter().zip(&above).map(|(x, y)| [*x, *y]).collect();
+            let points = places
+                .iter()
+                .zip(&above)
+                .map(|(x, y)| DataPoint::new(*x, *y))
+                .collect();
             below = above;
             Series::new(name.clone(), Look::Area, points).band(band)
         };
@@ -74,17 +80,17 @@ impl Series {
     }
 
     /// Marks.
-    pub fn marks(name: impl Into<String>, points: Vec<[f64; 2]>) -> Series {
+    pub fn marks(name: impl Into<String>, points: Vec<DataPoint>) -> Series {
         Series::new(name, Look::Marks, points)
     }
 
     /// Rings round points, such as those of a Pareto front.
-    pub fn rings(name: impl Into<String>, points: Vec<[f64; 2]>) -> Series {
+    pub fn rings(name: impl Into<String>, points: Vec<DataPoint>) -> Series {
         Series::new(name, Look::Rings, points)
     }
 
     /// A dashed grey line to compare with.
-    pub fn reference(name: impl Into<String>, points: Vec<[f64; 2]>) -> Series {
+    pub fn reference(name: impl Into<String>, points: Vec<DataPoint>) -> Series {
         Series::new(name, Look::Reference, points)
     }
 

@@ -1,11 +1,15 @@
 //! Nothing in a figure overlaps or leaves the picture, measured on the SVG by another library.
 
-use figure::{Axis, Figure, FigureError, Look, Series, Surface, clashes};
+use figure::{Axis, DataPoint, Figure, FigureError, Look, Series, Surface, clashes};
 
-fn wave(n: usize, phase: f64) -> Vec<[f64; 2]> {
+fn points<const N: usize>(list: [[f64; 2]; N]) -> Vec<DataPoint> {
+    list.map(DataPoint::from).to_vec()
+}
+
+fn wave(n: usize, phase: f64) -> Vec<DataPoint> {
     let x = |i: usize| 360.0 * i as f64 / (n - 1) as f64;
     (0..n)
-        .map(|i| [x(i), 300.0 + 80.0 * (x(i).to_radians() + phase).cos()])
+        .map(|i| DataPoint::new(x(i), 300.0 + 80.0 * (x(i).to_radians() + phase).cos()))
         .collect()
 }
 
@@ -22,18 +26,18 @@ fn histories() -> Figure {
     .series(Series::line("outer contact", wave(500, 0.3)))
     .series(Series::reference(
         "without radial force",
-        vec![[0.0, 331.8], [360.0, 331.8]],
+        points([[0.0, 331.8], [360.0, 331.8]]),
     ))
 }
 
 /// Errors against cost of two methods, Pareto front marked, labels at every point of the front.
 fn work_precision() -> Figure {
-    let points = |factor: f64| -> Vec<[f64; 2]> {
+    let points = |factor: f64| -> Vec<DataPoint> {
         (0..6)
-            .map(|i| [factor * 0.1 * 4f64.powi(i), 0.1 * 2.3f64.powi(-i)])
+            .map(|i| DataPoint::new(factor * 0.1 * 4f64.powi(i), 0.1 * 2.3f64.powi(-i)))
             .collect()
     };
-    let errors = points(1.0).iter().map(|p| [0.8 * p[1], 1.3 * p[1]]).collect();
+    let errors = points(1.0).iter().map(|p| [0.8 * p.y, 1.3 * p.y]).collect();
     let figure = Figure::new(
         "Error of the ball force against cost",
         Axis::logarithmic("CPU time", "s"),
@@ -60,7 +64,7 @@ fn map() -> Figure {
     );
     let circle = (0..=40)
         .map(|i| 0.157 * f64::from(i))
-        .map(|t| [90.0 + 8.0 * t.cos(), 2.5 + t.sin()]);
+        .map(|t| DataPoint::new(90.0 + 8.0 * t.cos(), 2.5 + t.sin()));
     Figure::new(
         "Stress of the outer raceway",
         Axis::linear("azimuth", "deg").tight(),
@@ -92,17 +96,18 @@ fn awkward() -> Vec<Figure> {
     let crowded = (0..30).fold(
         Figure::new("crowd", Axis::linear("x", "1"), Axis::linear("y", "1")).size(420, 300),
         |f, i| {
-            f.series(Series::marks("", vec![[f64::from(i % 6), f64::from(i / 6)]]))
-                .label([f64::from(i % 6), f64::from(i / 6)], format!("point {i}"))
+            let at = DataPoint::new(f64::from(i % 6), f64::from(i / 6));
+            f.series(Series::marks("", vec![at]))
+                .label(at, format!("point {i}"))
         },
     );
-    let numbers = [[0.0, 1e-12], [1e9, 1.0000001e-12]];
+    let numbers = points([[0.0, 1e-12], [1e9, 1.0000001e-12]]);
     vec![
         many(14),
         Figure::new(long, Axis::linear(long, "m"), Axis::linear(long, "N"))
-            .series(Series::marks(long, numbers.to_vec())),
+            .series(Series::marks(long, numbers)),
         Figure::new("one point", Axis::linear("x", "1"), Axis::logarithmic("y", "1"))
-            .series(Series::marks("p", vec![[0.0, 7.0]])),
+            .series(Series::marks("p", points([[0.0, 7.0]]))),
         Figure::new(
             "wide range",
             Axis::logarithmic("x", "s"),
@@ -110,14 +115,14 @@ fn awkward() -> Vec<Figure> {
         )
         .series(Series::line(
             "p",
-            vec![[1e-30, 1e-300], [1.0, 1e300], [2.0, 0.0], [f64::NAN, 1.0]],
+            points([[1e-30, 1e-300], [1.0, 1e300], [2.0, 0.0], [f64::NAN, 1.0]]),
         )),
         Figure::new(
             "few decades",
             Axis::logarithmic("x", "s"),
             Axis::logarithmic("y", "1"),
         )
-        .series(Series::line("p", vec![[1.1, 0.31], [1.3, 0.39]])),
+        .series(Series::line("p", points([[1.1, 0.31], [1.3, 0.39]]))),
         crowded,
     ]
 }
@@ -245,7 +250,7 @@ fn an_image_has_text_without_system_fonts() {
     let axes = || (Axis::linear("x", "m"), Axis::linear("y", "m"));
     let image = |title: &str| {
         let (x, y) = axes();
-        let figure = Figure::new(title, x, y).series(Series::line("", vec![[0.0, 0.0], [1.0, 1.0]]));
+        let figure = Figure::new(title, x, y).series(Series::line("", points([[0.0, 0.0], [1.0, 1.0]])));
         figure.png(1.0).unwrap()
     };
     assert!(image("Title of some length").len() > image(".").len() + 500);
@@ -262,7 +267,7 @@ fn the_same_figure_has_the_same_bytes() {
 #[test]
 fn nothing_to_draw_is_an_error() {
     let figure = Figure::new("forces", Axis::linear("x", "m"), Axis::logarithmic("y", "N"))
-        .series(Series::line("a", vec![[0.0, -1.0], [1.0, f64::NAN]]));
+        .series(Series::line("a", points([[0.0, -1.0], [1.0, f64::NAN]])));
     let error = figure.svg().unwrap_err().to_string();
     assert!(
         error.contains("\"forces\" has nothing to draw: none of its 2 points is finite and positive"),
@@ -274,7 +279,7 @@ fn nothing_to_draw_is_an_error() {
     ));
     let axes = (Axis::linear("x", "m"), Axis::linear("y", "m"));
     let small = Figure::new("small", axes.0, axes.1)
-        .series(Series::line("a", vec![[0.0, 1.0]]))
+        .series(Series::line("a", points([[0.0, 1.0]])))
         .size(60, 60);
     assert!(
         small
@@ -319,7 +324,9 @@ fn a_figure_of_many_shaded_series_names_some_of_them() {
         Axis::linear("force", "N"),
     );
     for i in 0..200 {
-        let points = (0..10).map(|j| [f64::from(j), f64::from(i + j)]).collect();
+        let points = (0..10)
+            .map(|j| DataPoint::new(f64::from(j), f64::from(i + j)))
+            .collect();
         let name = format!("axial force {i}.125 kN");
         figure = figure.series(Series::line(name, points).shade(i as usize, 200));
     }
@@ -342,7 +349,9 @@ fn many_shaded_series_have_a_colour_bar_in_the_colours_of_the_curves() {
     )
     .surface(Surface::bar_of_series(force));
     for i in 0..50 {
-        let points = (0..10).map(|j| [f64::from(j), f64::from(i + j)]).collect();
+        let points = (0..10)
+            .map(|j| DataPoint::new(f64::from(j), f64::from(i + j)))
+            .collect();
         let part = f64::from(i) / 49.0;
         figure = figure.series(Series::line(format!("curve {i}"), points).shade_at(part));
     }

@@ -1,6 +1,6 @@
 //! Figures of a life: round the raceways, and over the swept value.
 
-use figure::{Axis, Figure, Series};
+use figure::{Axis, DataPoint, Figure, Series};
 use plot::Named;
 use plot::quantity::{DEGREE, azimuth_axis};
 
@@ -28,14 +28,14 @@ pub fn round(found: &Assessment) -> Named {
     Named::new("life_round", figure)
 }
 
-fn places(ring: &RacewayLife) -> Vec<[f64; 2]> {
+fn places(ring: &RacewayLife) -> Vec<DataPoint> {
     let Some(positions) = &ring.positions else {
         return Vec::new();
     };
     let lives = positions.l10r_revolutions.iter();
     let lives = lives.map(|life| life.map_or(f64::NAN, |life| 1e-6 * life));
     let angles = positions.azimuth_rad.iter().map(|angle| angle * DEGREE.factor);
-    angles.zip(lives).map(|(x, y)| [x, y]).collect()
+    angles.zip(lives).map(|(x, y)| DataPoint::new(x, y)).collect()
 }
 
 /// Lives over the swept value; `x` has a place on the axis for each point.
@@ -52,7 +52,7 @@ pub fn over_sweep(axis: Axis, x: &[f64], points: &[(SweepLife, Assessment)]) -> 
             continue;
         }
         let line = x.iter().zip(lives);
-        let line = line.map(|(x, life)| [*x, life.map_or(f64::NAN, |life| 1e-6 * life)]);
+        let line = line.map(|(x, life)| DataPoint::new(*x, life.map_or(f64::NAN, |life| 1e-6 * life)));
         figure = figure.series(Series::line_and_marks(name, line.collect()));
     }
     Named::new("life", figure)

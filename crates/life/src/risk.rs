@@ -40,15 +40,15 @@ pub fn damage_of_pass(patch: &LoadedPatch, body: [f64; 6], poisson_ratio: f64, l
 
 /// The section I.
 fn section(patch: &LoadedPatch, body: [f64; 6], poisson_ratio: f64, limit: f64, cells: [usize; 3]) -> f64 {
-    let [along, rolling] = patch.semi_axes;
-    if patch.force <= 0.0 || along.min(rolling) <= 0.0 {
+    let axes = patch.semi_axes;
+    if patch.force <= 0.0 || axes.minor() <= 0.0 {
         return 0.0;
     }
-    let pressure = EllipticPressure::of_force(patch.force, patch.semi_axes, poisson_ratio);
+    let pressure = EllipticPressure::of_force(patch.force, axes, poisson_ratio);
     let size = [
-        2.0 * SECTION[0] * along,
-        SECTION[1] * along.min(rolling),
-        2.0 * SECTION[2] * rolling,
+        2.0 * SECTION[0] * axes.groove,
+        SECTION[1] * axes.minor(),
+        2.0 * SECTION[2] * axes.rolling,
     ];
     let cell = [0, 1, 2].map(|i| size[i] / cells[i] as f64);
     let track: Vec<f64> = (0..cells[2])
@@ -78,6 +78,7 @@ fn section(patch: &LoadedPatch, body: [f64; 6], poisson_ratio: f64, limit: f64, 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use contact::SemiAxes;
 
     const NU: f64 = 0.3;
 
@@ -88,9 +89,9 @@ mod tests {
             azimuth: 0.0,
             force,
             angle: 0.3,
-            semi_axes: [1e-3 * size, 0.1e-3 * size],
+            semi_axes: SemiAxes::new(1e-3 * size, 0.1e-3 * size),
             patch_angle: 0.3,
-            patch_axes: [2e-3, 1e-3],
+            patch_axes: SemiAxes::new(2e-3, 1e-3),
         }
     }
 

@@ -1,6 +1,6 @@
 //! Forces, contact angles and pressures of the balls: round the bearing, and against time or the swept value.
 
-use figure::{Axis, Figure, Series};
+use figure::{Axis, DataPoint, Figure, Series};
 
 use super::choice::Choice;
 use super::named::Named;
@@ -242,17 +242,16 @@ fn round_each(
 }
 
 /// Points in the order of their azimuth from 0 to 360 deg.
-fn by_azimuth(table: &Table, rows: &[usize], values: &[f64]) -> anyhow::Result<Vec<[f64; 2]>> {
+fn by_azimuth(table: &Table, rows: &[usize], values: &[f64]) -> anyhow::Result<Vec<DataPoint>> {
     let azimuth = table.column("azimuth_rad")?;
-    let places = rows
-        .iter()
-        .map(|&row| (azimuth[row] * DEGREE.factor).rem_euclid(360.0));
-    let mut places: Vec<[f64; 2]> = places.zip(values).map(|(x, &y)| [x, y]).collect();
-    places.sort_by(|a, b| a[0].total_cmp(&b[0]));
+    let place = |&row: &usize| (azimuth[row] * DEGREE.factor).rem_euclid(360.0);
+    let places: Vec<f64> = rows.iter().map(place).collect();
+    let mut places = points(&places, values);
+    places.sort_by(|a, b| a.x.total_cmp(&b.x));
     if let Some(&first) = places.first() {
         // The curve closes.
-        places.push([first[0] + 360.0, first[1]]);
-        places.retain(|place| place[0] <= 360.0 + 1e-9);
+        places.push(DataPoint::new(first.x + 360.0, first.y));
+        places.retain(|place| place.x <= 360.0 + 1e-9);
     }
     Ok(places)
 }
@@ -281,7 +280,8 @@ fn over_values(
             let mut loaded = values(table, contact, side, &rows)?;
             loaded.retain(|v| v.is_finite());
             let of_all = |f: fn(f64, f64) -> f64| loaded.iter().copied().reduce(f).unwrap_or(f64::NAN);
-            mean.push([x[rows[0]], loaded.iter().sum::<f64>() / loaded.len() as f64]);
+            let of_loaded = loaded.iter().sum::<f64>() / loaded.len() as f64;
+            mean.push(DataPoint::new(x[rows[0]], of_loaded));
             band.push([of_all(f64::min), of_all(f64::max)]);
         }
         let name = format!("{side} contact");
@@ -343,13 +343,13 @@ fn way_round(
     let mut figure = Figure::new(title, x_axis, contact.y_axis());
     for side in SIDES {
         let along = rows.iter().zip(values(table, contact, side, &rows)?);
-        let mut line: Vec<[f64; 2]> = Vec::new();
+        let mut line: Vec<DataPoint> = Vec::new();
         for (&row, value) in along {
             let place = (azimuth[row] * DEGREE.factor).rem_euclid(360.0);
-            if line.last().is_some_and(|last| (last[0] - place).abs() > 180.0) {
-                line.push([f64::NAN; 2]);
+            if line.last().is_some_and(|last| (last.x - place).abs() > 180.0) {
+                line.push(DataPoint::GAP);
             }
-            line.push([place, value]);
+            line.push(DataPoint::new(place, value));
         }
         figure = figure.series(Series::line(format!("{side} contact"), line));
     }

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use anyhow::Context;
 use csv::StringRecord;
-use figure::{Axis, Figure, Series};
+use figure::{Axis, DataPoint, Figure, Series};
 use results::campbell::{CAMPBELL_LINES, CAMPBELL_TABLE, EXCITATIONS};
 use results::table::{Rows, Table, read_rows};
 use serde::Deserialize;
@@ -47,7 +47,8 @@ pub fn figures(dir: &Path) -> anyhow::Result<Vec<(&'static str, Figure)>> {
     );
     for whirl in WHIRLS {
         let of = shown.iter().filter(|row| row.whirl == whirl);
-        let places: Vec<[f64; 2]> = of.map(|row| [row.speed_rpm, row.frequency_hz]).collect();
+        let place = |row: &&CampbellRow| DataPoint::new(row.speed_rpm, row.frequency_hz);
+        let places: Vec<DataPoint> = of.map(place).collect();
         if !places.is_empty() {
             figure = figure.series(Series::marks(whirl, places));
         }
@@ -63,15 +64,16 @@ pub fn figures(dir: &Path) -> anyhow::Result<Vec<(&'static str, Figure)>> {
 }
 
 /// A line up to a value, where it is cut between its points.
-fn below(line: &[[f64; 2]], most: f64) -> Vec<[f64; 2]> {
-    let mut kept: Vec<[f64; 2]> = Vec::new();
+fn below(line: &[DataPoint], most: f64) -> Vec<DataPoint> {
+    let mut kept = Vec::new();
     for (i, point) in line.iter().enumerate() {
-        if point[1] <= most {
+        if point.y <= most {
             kept.push(*point);
             continue;
         }
-        if let Some([x, y]) = i.checked_sub(1).map(|before| line[before]) {
-            kept.push([x + (point[0] - x) * (most - y) / (point[1] - y), most]);
+        if let Some(DataPoint { x, y }) = i.checked_sub(1).map(|before| line[before]) {
+            let x = x + (point.x - x) * (most - y) / (point.y - y);
+            kept.push(DataPoint::new(x, most));
         }
         break;
     }
@@ -85,9 +87,10 @@ mod tests {
     /// Wrong: a line of excitation would be drawn past the modes, or end before them.
     #[test]
     fn lines_end_at_the_modes() {
-        let line = [[0.0, 0.0], [1.0, 10.0], [2.0, 20.0]];
-        assert_eq!(below(&line, 15.0), [[0.0, 0.0], [1.0, 10.0], [1.5, 15.0]]);
+        let line = [[0.0, 0.0], [1.0, 10.0], [2.0, 20.0]].map(DataPoint::from);
+        let cut = [[0.0, 0.0], [1.0, 10.0], [1.5, 15.0]].map(DataPoint::from);
+        assert_eq!(below(&line, 15.0), cut);
         assert_eq!(below(&line, 30.0), line);
-        assert_eq!(below(&line[1..], 5.0), [[0.0; 2]; 0]);
+        assert!(below(&line[1..], 5.0).is_empty());
     }
 }

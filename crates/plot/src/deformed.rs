@@ -7,7 +7,7 @@
 use std::f64::consts::TAU;
 
 use checkpoint::{Grid, StepRecord, read_any_step, read_mesh};
-use figure::{Figure, Series};
+use figure::{DataPoint, Figure, Series};
 
 use super::quantity::{MICROMETRE, MILLIMETRE};
 use super::raceways;
@@ -83,11 +83,11 @@ fn draw(rings: &[Option<RingOutline>], balls: &[Disc], at: &str) -> Option<Figur
     for Disc { x, y, radius } in balls {
         let side = |i: usize| {
             let (sin, cos) = (TAU * i as f64 / SIDES as f64).sin_cos();
-            [x + radius * cos, y + radius * sin].map(|x| MILLIMETRE.factor * x)
+            DataPoint::from([x + radius * cos, y + radius * sin].map(|x| MILLIMETRE.factor * x))
         };
         round.extend((0..=SIDES).map(side));
         // The line ends between two balls.
-        round.push([f64::NAN; 2]);
+        round.push(DataPoint::GAP);
     }
     Some(figure.series(Series::line("balls", round)))
 }

@@ -1,6 +1,6 @@
 //! The ledger of energy of a motion, and what it leaves unexplained.
 
-use figure::{Axis, Figure, Series};
+use figure::{Axis, DataPoint, Figure, Series};
 
 use super::named::Named;
 use super::quantity::{MILLIJOULE, MILLISECOND, points};
@@ -83,7 +83,7 @@ fn changes(table: &Table) -> anyhow::Result<Named> {
     }
     Ok(Named::new(
         "energy_ledger",
-        figure.series(Series::reference("", vec![[times[0], 0.0]])),
+        figure.series(Series::reference("", vec![DataPoint::new(times[0], 0.0)])),
     ))
 }
 

@@ -2,7 +2,7 @@
 
 use checkpoint::{all_steps, read_any_step, read_mesh};
 use contact::Groove;
-use figure::{Figure, Series};
+use figure::{DataPoint, Figure, Series};
 
 use super::quantity::{DEGREE, MEGAPASCAL};
 use super::raceways;
@@ -33,15 +33,13 @@ pub fn figures(results: &Results, step: Option<u64>) -> anyhow::Result<Vec<(Stri
         for ((figure, groove), body) in figures.iter_mut().zip(raceways.grooves).zip([0, 1]) {
             let nodes = raceways::nodes(&grid, &record, &groove);
             let (ball, azimuth) = raceways::most_loaded(balls, step, &groove)?;
-            let points: Vec<[f64; 2]> = raceways::rows(&nodes)
+            let points: Vec<DataPoint> = raceways::rows(&nodes)
                 .into_iter()
                 .map(|(key, row)| {
-                    [
-                        1e-3 * key as f64,
-                        raceways::at_azimuth(&row, azimuth) * MEGAPASCAL.factor,
-                    ]
+                    let stress = raceways::at_azimuth(&row, azimuth);
+                    DataPoint::new(1e-3 * key as f64, stress * MEGAPASCAL.factor)
                 })
-                .filter(|[_, stress]| !stress.is_nan())
+                .filter(|point| !point.y.is_nan())
                 .collect();
             if points.len() < 2 {
                 continue;

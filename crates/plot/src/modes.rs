@@ -5,7 +5,7 @@ use std::path::Path;
 
 use anyhow::Context;
 use csv::StringRecord;
-use figure::{Axis, Figure, Series};
+use figure::{Axis, DataPoint, Figure, Series};
 use results::table::{Rows, read_rows};
 use serde::Deserialize;
 
@@ -40,7 +40,7 @@ pub fn figures(dir: &Path) -> anyhow::Result<Vec<Named>> {
     );
     let mut figure = Figure::new("Natural frequencies", axes.0, axes.1);
     for (body, rows) in bodies {
-        let place = |row: &ModeRow| [row.mode, 1e-3 * row.frequency_hz];
+        let place = |row: &ModeRow| DataPoint::new(row.mode, 1e-3 * row.frequency_hz);
         let error = |row: &ModeRow| {
             [row.frequency_hz - row.bound_hz, row.frequency_hz + row.bound_hz].map(|f| 1e-3 * f)
         };

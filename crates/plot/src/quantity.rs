@@ -1,6 +1,6 @@
 //! How a column is shown: its unit for a reader, and the factor from SI.
 
-use figure::Axis;
+use figure::{Axis, DataPoint};
 
 /// A unit that axes show.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -171,8 +171,8 @@ pub fn azimuth_axis() -> Axis {
 }
 
 /// Points from two columns of equal length.
-pub fn points(x: &[f64], y: &[f64]) -> Vec<[f64; 2]> {
-    x.iter().zip(y).map(|(&x, &y)| [x, y]).collect()
+pub fn points(x: &[f64], y: &[f64]) -> Vec<DataPoint> {
+    x.iter().zip(y).map(|(&x, &y)| DataPoint::new(x, y)).collect()
 }
 
 #[cfg(test)]

@@ -15,6 +15,7 @@ use std::f64::consts::TAU;
 
 use checkpoint::{Grid, StepRecord};
 use contact::Groove;
+use figure::DataPoint;
 
 use super::quantity::MILLIMETRE;
 use super::raceways::on_torus;
@@ -52,11 +53,11 @@ impl DisplacedPoint {
 }
 
 /// The points of a circle, the first at the end again.
-pub fn closed(circle: &[DisplacedPoint], magnification: f64) -> Vec<[f64; 2]> {
+pub fn closed(circle: &[DisplacedPoint], magnification: f64) -> Vec<DataPoint> {
     circle
         .iter()
         .chain(circle.first())
-        .map(|moved| moved.shown(magnification))
+        .map(|moved| moved.shown(magnification).into())
         .collect()
 }
 

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use contact::Side;
-use figure::{Axis, Figure, Series, Surface};
+use figure::{Axis, DataPoint, Figure, Series, Surface};
 use results::seat::SEAT_TABLES;
 use results::table::Table;
 
@@ -67,7 +67,7 @@ fn of_ring(table: &Table, side: Side) -> anyhow::Result<Vec<(String, Figure)>> {
         let column = MICROMETRE.of(table.column(&format!("{name}_m"))?);
         let middle = (0..=n_round).map(|i| {
             let row = n_across * (i % n_round) + n_across / 2;
-            [step * i as f64, column[row]]
+            DataPoint::new(step * i as f64, column[row])
         });
         motion = motion.series(Series::line(name, middle.collect()));
     }

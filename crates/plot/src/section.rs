@@ -2,7 +2,7 @@
 
 use checkpoint::{read_any_step, read_mesh};
 use contact::Groove;
-use figure::{Figure, Series, Surface, Triangle};
+use figure::{DataPoint, Figure, Series, Surface, Triangle};
 
 use super::cut;
 use super::quantity::{DEGREE, MEGAPASCAL, MILLIMETRE};
@@ -81,7 +81,8 @@ fn contact(table: &Table, step: u64, ball: usize, groove: &Groove) -> anyhow::Re
     let place = |row: usize| {
         let [_, along] = groove.direction(angle[row]);
         let z = groove.centre_z + groove.groove_radius * along;
-        [z, groove.radius(angle[row])].map(|x| x * MILLIMETRE.factor)
+        let place = [z, groove.radius(angle[row])];
+        DataPoint::from(place.map(|x| x * MILLIMETRE.factor))
     };
     let places = (0..table.n_rows()).filter(is_it).map(place);
     Ok(Series::rings("contact", places.collect()))

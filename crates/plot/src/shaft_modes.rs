@@ -6,7 +6,7 @@
 
 use std::path::Path;
 
-use figure::{Axis, Figure, Look, Series};
+use figure::{Axis, DataPoint, Figure, Look, Series};
 use results::several::{BEARING, BEARINGS_TABLE};
 use results::table::Table;
 
@@ -24,7 +24,7 @@ struct ShaftMode {
     /// Frequency, way and direction in words.
     name: String,
     /// Place, mm, and displacement over the largest one of the shaft.
-    line: Vec<[f64; 2]>,
+    line: Vec<DataPoint>,
 }
 
 /// Figures of the modes in which the shaft takes part, the lowest first; none without such.
@@ -123,9 +123,10 @@ fn figure(modes: &[ShaftMode], bearings: &[(f64, &str)]) -> Figure {
         displacement.including(-1.0).including(1.0),
     );
     for &(z, name) in bearings {
+        let [low, high] = [-1.0, 1.0].map(|u| DataPoint::new(z, u));
         figure = figure
-            .series(Series::reference("bearings", vec![[z, -1.0], [z, 1.0]]))
-            .label([z, -1.0], name);
+            .series(Series::reference("bearings", vec![low, high]))
+            .label(low, name);
     }
     for mode in modes {
         // A shaft with one place has no line.
@@ -183,12 +184,13 @@ mod tests {
         let bent = mode(&shapes, 1, 100.04).unwrap().unwrap();
         assert_eq!(bent.name, "1: 100.0 Hz, at 150 deg");
         let expected = [[0.0, 0.0], [100.0, 1.0], [200.0, 0.0]];
-        for (found, expected) in bent.line.iter().flatten().zip(expected.iter().flatten()) {
-            assert!((found - expected).abs() < 1e-12, "{:?}", bent.line);
+        for (found, [x, y]) in bent.line.iter().zip(expected) {
+            let off = (found.x - x).abs().max((found.y - y).abs());
+            assert!(off < 1e-12, "{:?}", bent.line);
         }
         let along = mode(&shapes, 3, 400.0).unwrap().unwrap();
         assert_eq!(along.name, "3: 400.0 Hz, along z");
-        assert!(along.line.iter().all(|[_, u]| *u == 1.0));
+        assert!(along.line.iter().all(|p| p.y == 1.0));
         let found = figures(dir.path()).unwrap();
         assert_eq!(found.len(), 1);
         assert_eq!(found[0].0, "shaft_modes");

@@ -5,10 +5,11 @@
 //! another one, it is drawn in dashes; at an edge it ends where the groove does.
 
 use std::f64::consts::TAU;
+use std::ops::RangeInclusive;
 
 use checkpoint::{read_any_step, read_mesh};
 use contact::Groove;
-use figure::{Axis, Figure, Look, Series, Surface};
+use figure::{Axis, DataPoint, Figure, Look, Series, Surface};
 
 use super::choice::Choice;
 use super::named::Named;
@@ -88,7 +89,7 @@ fn unrolled(
     let mut figure = Figure::new(title, azimuth_axis(), y_axis)
         .surface(Surface::new(value_axis, x_edges, y_edges, values)?)
         .size(900, 400);
-    for (look, ellipse) in ellipses(groove, [low, high].map(arc), (balls, step))? {
+    for (look, ellipse) in ellipses(groove, &(arc(low)..=arc(high)), (balls, step))? {
         let name = match look {
             Look::BrokenOutline => "ellipse at an edge or over a profile: not Hertz's",
             _ => "contact ellipse",
@@ -112,13 +113,13 @@ fn interpolate(rows: &[(f64, Vec<RacewayNode>)], azimuth: f64, angle: f64) -> f6
     a + part * (b - a)
 }
 
-/// Outlines of the loaded contacts of a step, `[azimuth in deg, arc in mm]`, cut where the picture ends, and how they
-/// are drawn. `ends` are those of the groove, mm.
+/// Outlines of the loaded contacts of a step over azimuth in deg and arc in mm, cut where the picture ends, and how
+/// they are drawn. `arcs` are those of the groove, mm.
 fn ellipses(
     groove: &Groove,
-    ends: [f64; 2],
+    arcs: &RangeInclusive<f64>,
     (balls, step): (&Table, u64),
-) -> anyhow::Result<Vec<(Look, Vec<[f64; 2]>)>> {
+) -> anyhow::Result<Vec<(Look, Vec<DataPoint>)>> {
     let side = groove.side.name();
     let column = |name: &str| balls.column(&format!("{side}_{name}"));
     let (force, angle) = (column("force_n")?, column("contact_angle_rad")?);
@@ -138,32 +139,29 @@ fn ellipses(
             let t = TAU * i as f64 / CORNERS as f64;
             let arc = groove.groove_radius * angle[row] + across[row] * t.sin();
             let arc = if is_cut(row) {
-                (1e3 * arc).clamp(ends[0], ends[1])
+                (1e3 * arc).clamp(*arcs.start(), *arcs.end())
             } else {
                 1e3 * arc
             };
-            [middle + half_width * t.cos(), arc]
+            DataPoint::new(middle + half_width * t.cos(), arc)
         };
-        let inside = |p: [f64; 2]| {
-            if (0.0..=360.0).contains(&p[0]) {
-                p
-            } else {
-                [f64::NAN; 2]
-            }
+        let turned = |p: DataPoint, turn: f64| match p.x + turn {
+            x if (0.0..=360.0).contains(&x) => DataPoint { x, ..p },
+            _ => DataPoint::GAP,
         };
         // At the ends of the picture both halves are drawn.
         [-360.0, 0.0, 360.0]
             .map(|turn| {
                 (0..=CORNERS)
                     .map(corner)
-                    .map(|[x, y]| inside([x + turn, y]))
+                    .map(|p| turned(p, turn))
                     .collect::<Vec<_>>()
             })
             .map(|line| (look(row), line))
     };
     let drawn = loaded
         .flat_map(outline)
-        .filter(|(_, line)| line.iter().any(|p| p[0].is_finite()));
+        .filter(|(_, line)| line.iter().any(|p| p.x.is_finite()));
     Ok(drawn.collect())
 }
 
@@ -188,9 +186,9 @@ mod tests {
                     0,2,300,0.35,1.3e-4,8.4e-4,edge\n";
         std::fs::write(folder.path().join("balls.csv"), text).unwrap();
         let balls = Table::read(folder.path(), "balls.csv").unwrap().unwrap();
-        let drawn = ellipses(&groove, [-1.9, 1.9], (&balls, 0)).unwrap();
+        let drawn = ellipses(&groove, &(-1.9..=1.9), (&balls, 0)).unwrap();
         assert_eq!(drawn.len(), 2);
-        let arcs = |k: usize| drawn[k].1.iter().map(|[_, arc]| *arc);
+        let arcs = |k: usize| drawn[k].1.iter().map(|p| p.y);
         let highest = |k: usize| arcs(k).fold(f64::NEG_INFINITY, f64::max);
         assert!(drawn[0].0 == Look::Outline && (highest(0) - 1e3 * (4.75e-3 * 0.35 + 8.4e-4)).abs() < 1e-9);
         assert!(

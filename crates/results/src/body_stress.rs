@@ -34,7 +34,7 @@ pub fn under_contacts(shown: &Shown<'_>, side: Side) -> Result<Option<Vec<BodyUn
         return Ok(None);
     }
     let place = |patch: &LoadedPatch| {
-        let minor = patch.semi_axes[0].min(patch.semi_axes[1]);
+        let minor = patch.semi_axes.minor();
         let depth = match minor > 0.0 {
             true => {
                 subsurface(patch.semi_axes, ring.material.poisson_ratio)

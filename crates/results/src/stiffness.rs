@@ -71,8 +71,11 @@ impl OperatingPoint {
     pub fn new(solution: &StaticSolution, speed_rad_per_s: BothRings) -> OperatingPoint {
         let (shaft, q) = (&solution.parts.shaft, solution.displacements.shaft);
         let mut loads = shaft.dofs.map(|dof| dof.load);
-        let moments = shaft.tilted_moments(Interval::Rest, &q);
-        (0..2).for_each(|i| loads[3 + i] += moments[i]);
+        let tilted = shaft.loads_by_tilt(Interval::Rest, &q);
+        loads
+            .iter_mut()
+            .zip(tilted)
+            .for_each(|(load, more)| *load += more);
         let of_ball = |ball: &dynamics::balls::BallResult| ForcesOfBall {
             azimuth_rad: ball.azimuth_rad,
             inner_force_n: ball.inner.force_n,

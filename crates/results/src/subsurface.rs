@@ -4,8 +4,8 @@
 //! the ratios hold for all contacts of a side at every step, and the values are those of the most loaded contact of
 //! the last one.
 
-use contact::Side;
 use contact::halfspace::{Extreme, subsurface};
+use contact::{SemiAxes, Side};
 use dynamics::Model;
 use dynamics::balls::BallResult;
 use scene::Materials;
@@ -18,8 +18,8 @@ pub struct ContactSubsurface {
     most_loaded_ball: usize,
     /// Its peak pressure, Pa.
     peak_pressure_pa: f64,
-    /// Semi-axes of its ellipse [along the groove, rolling direction], m.
-    semi_axes_m: [f64; 2],
+    /// Semi-axes of its ellipse, m.
+    semi_axes_m: SemiAxes,
     /// Below the surface of the ball.
     ball: BodySubsurface,
     /// Below the raceway.
@@ -53,12 +53,11 @@ pub fn contacts(model: &Model, materials: &Materials, balls: &[BallResult]) -> [
         let contact = balls[most_loaded_ball].contact(side);
         // The shape of the ellipse does not depend on the force.
         let shape = model.hertz[side.index()].semi_axes(1.0);
-        let [a, b] = contact.semi_axes_m;
         let body = |poisson_ratio: f64| {
             let found = subsurface(shape, poisson_ratio);
             let largest = |extreme: Extreme| Largest {
                 stress_pa: extreme.over_peak_pressure * contact.peak_pressure_pa,
-                depth_m: extreme.depth_over_minor_axis * a.min(b),
+                depth_m: extreme.depth_over_minor_axis * contact.semi_axes_m.minor(),
                 over_peak_pressure: extreme.over_peak_pressure,
                 depth_over_minor_semi_axis: extreme.depth_over_minor_axis,
             };

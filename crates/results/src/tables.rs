@@ -325,8 +325,8 @@ fn ellipse_columns(first: &Snapshot) -> Vec<String> {
 fn rest_of(contact: &ContactResult) -> [f64; 4] {
     [
         contact.approach_m,
-        contact.semi_axes_m[0],
-        contact.semi_axes_m[1],
+        contact.semi_axes_m.groove,
+        contact.semi_axes_m.rolling,
         contact.peak_pressure_pa,
     ]
 }

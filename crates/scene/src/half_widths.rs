@@ -23,6 +23,6 @@ pub fn half_widths(scene: &Scene, model: &mut Model) -> BothRings {
         let forces = solution.balls.iter().map(|ball| ball.contact(side).force_n);
         let loaded: Vec<f64> = forces.filter(|force| *force > 0.0).collect();
         let mean = loaded.iter().sum::<f64>() / loaded.len().max(1) as f64;
-        model.hertz[side.index()].semi_axes(mean)[1]
+        model.hertz[side.index()].semi_axes(mean).rolling
     })
 }

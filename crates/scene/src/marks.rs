@@ -118,7 +118,7 @@ impl MeshedRaceway {
 
     /// Azimuths and groove angles, rad, of a grid at which there is none.
     fn gaps(&self) -> Vec<[f64; 2]> {
-        let [low, high] = self.surface.angle_range;
+        let (low, high) = self.surface.angle_range.clone().into_inner();
         let azimuths = (0..SAMPLES[0]).map(|i| TAU * i as f64 / SAMPLES[0] as f64);
         // Points on the rims themselves are outside by round-off.
         let angle = move |i: usize| low + (high - low) * (i as f64 + 0.5) / SAMPLES[1] as f64;
@@ -131,7 +131,7 @@ impl MeshedRaceway {
     /// Whether there is none somewhere under a mark.
     fn lacks(&self, mark: &Mark, gaps: &[[f64; 2]]) -> bool {
         let half = [mark.length / self.radius, mark.width / self.groove_radius].map(|size| 0.5 * size);
-        let [low, high] = self.surface.angle_range;
+        let (low, high) = self.surface.angle_range.clone().into_inner();
         let turned = |azimuth: f64| (azimuth - mark.azimuth + 0.5 * TAU).rem_euclid(TAU) - 0.5 * TAU;
         let covers = |[azimuth, angle]: &[f64; 2]| {
             turned(*azimuth).abs() <= half[0] && (angle - mark.groove_angle).abs() <= half[1]

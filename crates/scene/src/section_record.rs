@@ -96,7 +96,8 @@ fn entries(scene: &Scene, side: Side, body: &FlexibleRing, section: &MeshedSecti
         SectionElement::Hex20 => "hex20",
         SectionElement::Tet10 => "tet10",
     };
-    let [low, high] = section.shoulder_diameters.map(millimetres);
+    let shoulders = section.shoulder_diameters;
+    let (low, high) = (millimetres(shoulders.at_low_z), millimetres(shoulders.at_high_z));
     let of_bearing = [
         (held.0.to_string(), millimetres(held.1)),
         (format!("{ring}_raceway_diameter"), millimetres(raceway)),

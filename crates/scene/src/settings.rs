@@ -30,10 +30,7 @@ pub fn settings(scene: &Scene, dynamic: &Dynamic) -> MotionSettings {
         speeds: speeds(scene),
         slip: scene.effects.slip(),
         contact_damping: scene.effects.contact_damping(),
-        rayleigh: scene
-            .effects
-            .ring_damping()
-            .map_or([0.0; 2], |d| [d.mass, d.stiffness]),
+        rayleigh: scene.effects.ring_damping().unwrap_or_default(),
     }
 }
 

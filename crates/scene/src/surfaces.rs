@@ -10,7 +10,7 @@ use dynamics::{RACEWAY_GROUP, RingModel, Surfaces};
 
 use crate::error::BuildError;
 use crate::marks::marks;
-use crate::tables::{self, Scene};
+use crate::tables::{self, Scene, ShoulderDiameters};
 use crate::worn_balls::{too_fine, worn_balls};
 
 /// The surfaces that a scene asks for; nothing where it does not.
@@ -111,7 +111,7 @@ pub fn shoulders(
     rings: &[Option<Arc<RingModel>>; 2],
 ) -> Shoulders {
     let unequal = |table: &tables::Ring| {
-        let [at_low_z, at_high_z] = table.section?.shoulder_diameters;
+        let ShoulderDiameters { at_low_z, at_high_z } = table.section?.shoulder_diameters;
         (at_low_z != at_high_z).then(|| (at_low_z - at_high_z).signum())
     };
     let drawn: Vec<f64> = [&scene.inner, &scene.outer]
@@ -155,7 +155,8 @@ fn groove_ends(
         let height = side.sign() * (0.5 * diameter - geometry.centre_radius(side));
         (height / geometry.groove_radius(side)).acos()
     };
-    let [at_low_z, at_high_z] = section.shoulder_diameters.map(angle);
+    let shoulders = section.shoulder_diameters;
+    let (at_low_z, at_high_z) = (angle(shoulders.at_low_z), angle(shoulders.at_high_z));
     // A positive groove angle points outwards along +z, on the inner ring along -z.
     Some(if side.sign() > 0.0 {
         -at_low_z..=at_high_z

@@ -16,7 +16,7 @@ use anyhow::{Context, ensure};
 use checkpoint::{all_steps, read_any_step};
 use clap::Args;
 use comm::print;
-use figure::{Axis, Figure, Series};
+use figure::{Axis, DataPoint, Figure, Series};
 use results::failure::Failure;
 use results::integrity::warn_of_doubts;
 use results::whole::{make_folder, require_own_picture, write, write_picture};
@@ -313,13 +313,13 @@ fn draw(named: &Titled, marks: &[Line], upto: Option<f64>) -> anyhow::Result<Fig
     );
     // The mean is taken out: frequency 0 has nothing to show.
     let last = (end / resolution).floor() as usize;
-    let points: Vec<[f64; 2]> = (1..=last)
-        .map(|k| [k as f64 * resolution, named.factor * values[k]])
+    let points: Vec<DataPoint> = (1..=last)
+        .map(|k| DataPoint::new(k as f64 * resolution, named.factor * values[k]))
         .collect();
-    let top = points.iter().map(|p| p[1]).fold(f64::MIN_POSITIVE, f64::max);
+    let top = points.iter().map(|p| p.y).fold(f64::MIN_POSITIVE, f64::max);
     let low = points
         .iter()
-        .map(|p| p[1])
+        .map(|p| p.y)
         .filter(|y| *y > 0.0)
         .fold(top, f64::min);
     let bottom = if named.is_density { low } else { 0.0 };
@@ -340,19 +340,20 @@ fn draw(named: &Titled, marks: &[Line], upto: Option<f64>) -> anyhow::Result<Fig
     };
     for (place, line) in marks.iter().enumerate() {
         for (x, is_sideband) in line.family() {
-            if x <= points[points.len() - 1][0] {
+            if x <= points[points.len() - 1].x {
                 let y = if is_sideband {
                     at_height(SIDEBAND_HEIGHT)
                 } else {
                     top
                 };
-                figure = figure.series(Series::reference("", vec![[x, bottom], [x, y]]));
+                let mark = [bottom, y].map(|y| DataPoint::new(x, y));
+                figure = figure.series(Series::reference("", mark.to_vec()));
             }
         }
         // Names stand one below the other: lines may be close.
         let y = at_height(1.0 - LABEL_STEP * (place as f64 + 0.5));
-        if line.frequency <= points[points.len() - 1][0] {
-            figure = figure.label([line.frequency, y], line.name);
+        if line.frequency <= points[points.len() - 1].x {
+            figure = figure.label(DataPoint::new(line.frequency, y), line.name);
         }
     }
     Ok(figure.series(Series::line("", points)))

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use figure::{Axis, Figure, Series};
+use figure::{Axis, DataPoint, Figure, Series};
 use results::whole::{make_folder, write_picture};
 
 use super::format::CostKind;
@@ -32,7 +32,7 @@ pub fn write(report: &StudyReport, out: &Path) -> anyhow::Result<Vec<PathBuf>> {
 /// One plot; none when no point has an error above zero.
 fn work_precision(report: &StudyReport, quantity: &QuantityReport) -> Option<Figure> {
     let joined = joined_axis(report);
-    let mut curves: BTreeMap<Vec<usize>, Vec<([f64; 2], String)>> = BTreeMap::new();
+    let mut curves: BTreeMap<Vec<usize>, Vec<(DataPoint, String)>> = BTreeMap::new();
     let mut front = Vec::new();
     let mut uncertainty = 0.0f64;
     for point in &report.points {
@@ -42,7 +42,7 @@ fn work_precision(report: &StudyReport, quantity: &QuantityReport) -> Option<Fig
         let (Some(cost), Some(error)) = (&point.cost, result.error.filter(|e| *e > 0.0)) else {
             continue;
         };
-        let at = [scaled(cost.of(report.cost), report.cost), error];
+        let at = DataPoint::new(scaled(cost.of(report.cost), report.cost), error);
         let label = joined.map_or(String::new(), |a| point.values[&report.axes[a].name].clone());
         curves
             .entry(curve_of(report, point, joined))
@@ -66,9 +66,7 @@ fn work_precision(report: &StudyReport, quantity: &QuantityReport) -> Option<Fig
     let ends = curves
         .values()
         .flatten()
-        .fold([f64::INFINITY, 0.0f64], |[l, h], (p, _)| {
-            [l.min(p[0]), h.max(p[0])]
-        });
+        .fold([f64::INFINITY, 0.0f64], |[l, h], (p, _)| [l.min(p.x), h.max(p.x)]);
     for (at, points) in &curves {
         let places = points.iter().map(|(p, _)| *p).collect();
         figure = figure.series(Series::line_and_marks(curve_name(report, at, joined), places));
@@ -78,7 +76,7 @@ fn work_precision(report: &StudyReport, quantity: &QuantityReport) -> Option<Fig
     }
     figure = figure.series(Series::rings("no other is cheaper and better", front));
     if uncertainty > 0.0 {
-        let line = ends.map(|x| [x, uncertainty]).to_vec();
+        let line = ends.map(|x| DataPoint::new(x, uncertainty)).to_vec();
         figure = figure.series(Series::reference("uncertainty of the reference", line));
     }
     Some(figure)

@@ -12,6 +12,7 @@
 //! ```
 
 use super::stress::EllipticPressure;
+use crate::semi_axes::SemiAxes;
 
 /// Steps of the scan that brackets a maximum on the axis, to a depth of [`DEEPEST`] smaller semi-axes.
 const SCAN: usize = 128;
@@ -39,11 +40,9 @@ pub struct Subsurface {
     pub orthogonal_shear: Extreme,
 }
 
-/// Largest stresses below an ellipse with semi-axes [x, y], any unit, y the rolling direction, in a body of a
-/// Poisson's ratio.
-pub fn subsurface(semi_axes: [f64; 2], poisson_ratio: f64) -> Subsurface {
-    let minor = semi_axes[0].min(semi_axes[1]);
-    let axes = semi_axes.map(|a| a / minor);
+/// Largest stresses below an ellipse with semi-axes of any unit in a body of a Poisson's ratio.
+pub fn subsurface(semi_axes: SemiAxes, poisson_ratio: f64) -> Subsurface {
+    let axes = semi_axes.map(|axis| axis / semi_axes.minor());
     let pressure = EllipticPressure::of_peak(1.0, axes, poisson_ratio);
     let principal = |z: f64| {
         let mut s = pressure.stress([0.0, 0.0, z]);
@@ -73,7 +72,8 @@ fn on_axis(stress: impl Fn(f64) -> f64) -> Extreme {
     }
 }
 
-fn orthogonal([a, b]: [f64; 2]) -> Extreme {
+fn orthogonal(axes: SemiAxes) -> Extreme {
+    let [a, b] = axes.into();
     // The confocal ellipsoid through the place of the maximum is never larger than twice the ellipse.
     let highest = 2.0 * a.max(b);
     let stress = |zeta: f64, root: f64| {

@@ -5,10 +5,11 @@
 
 use crate::elliptic::complete_elliptic;
 use crate::hertz::Elastic;
+use crate::semi_axes::SemiAxes;
 
-/// Mean normal displacement of the patch per unit load, m/N, for semi-axes in m (either order).
-pub fn patch_compliance(semi_axes: [f64; 2], body: Elastic) -> f64 {
-    let (major, minor) = (semi_axes[0].max(semi_axes[1]), semi_axes[0].min(semi_axes[1]));
+/// Mean normal displacement of the patch per unit load, m/N, for semi-axes in m.
+pub fn patch_compliance(semi_axes: SemiAxes, body: Elastic) -> f64 {
+    let (major, minor) = (semi_axes.major(), semi_axes.minor());
     let (k_integral, _) = complete_elliptic(1.0 - (minor / major) * (minor / major));
     0.8 * 1.5 / std::f64::consts::PI * body.plane_compliance() / major * k_integral
 }
@@ -26,7 +27,7 @@ mod tests {
             poisson_ratio: 0.3,
         };
         let expected = 0.8 * 0.75 * (1.0 - 0.09) / (207e9 * 1e-3);
-        let computed = patch_compliance([1e-3, 1e-3], body);
+        let computed = patch_compliance([1e-3, 1e-3].into(), body);
         assert!((computed / expected - 1.0).abs() < 1e-14, "{computed} {expected}");
     }
 }

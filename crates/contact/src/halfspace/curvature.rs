@@ -162,8 +162,8 @@ impl<'a> CurvedSurface<'a> {
         points: &[[f64; 3]],
         stress: &mut [[f64; 6]],
     ) {
-        let axes = pressure.semi_axes;
-        let (major, minor) = (axes[0].max(axes[1]), axes[0].min(axes[1]));
+        let axes = pressure.semi_axes.into();
+        let (major, minor) = (pressure.semi_axes.major(), pressure.semi_axes.minor());
         let counts = pressure.peak > SMALL_SHARE * scale;
         let (far, rays) = match (counts, major > SLENDER_RATIO * minor) {
             (false, _) => (ROUGH.far, &self.rules.rough),
@@ -204,7 +204,7 @@ impl<'a> CurvedSurface<'a> {
         }
         Target {
             point,
-            axes: pressure.semi_axes,
+            axes: pressure.semi_axes.into(),
             curvatures: self.curvatures,
             poisson_ratio: pressure.poisson_ratio,
             sum: [[0.0; LANES]; 6],

@@ -34,6 +34,7 @@ use pulp::{Simd, WithSimd};
 
 use super::carlson::{n_duplications, rd_pair};
 use super::confocal::{LANES, PointLanes, confocal};
+use crate::semi_axes::SemiAxes;
 
 /// c w below which E_aa and E_ab are integrated numerically: the closed forms divide by c.
 const NEARLY_CIRCULAR: f64 = 0.05;
@@ -53,8 +54,8 @@ const GAUSS: [(f64, f64); 8] = [
 /// A semi-ellipsoidal pressure on a half-space, ready to be evaluated.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EllipticPressure {
-    /// Semi-axes along x and y, m.
-    pub semi_axes: [f64; 2],
+    /// Semi-axes, m: along the groove is x, the rolling direction y.
+    pub semi_axes: SemiAxes,
     /// Peak pressure p0, Pa.
     pub peak: f64,
     /// Larger and smaller semi-axis over the larger one, squared.
@@ -67,23 +68,22 @@ pub struct EllipticPressure {
 }
 
 impl EllipticPressure {
-    /// A pressure that carries `force` (N) over semi-axes along [x, y], m, on a body of a given Poisson's ratio.
-    pub fn of_force(force: f64, semi_axes: [f64; 2], poisson_ratio: f64) -> EllipticPressure {
-        let peak = 1.5 * force / (PI * semi_axes[0] * semi_axes[1]);
+    /// A pressure that carries `force` (N) over semi-axes, m, on a body of a given Poisson's ratio.
+    pub fn of_force(force: f64, semi_axes: SemiAxes, poisson_ratio: f64) -> EllipticPressure {
+        let peak = 1.5 * force / (PI * semi_axes.groove * semi_axes.rolling);
         Self::of_peak(peak, semi_axes, poisson_ratio)
     }
 
     /// A pressure of a given peak, Pa.
-    pub fn of_peak(peak: f64, semi_axes: [f64; 2], poisson_ratio: f64) -> EllipticPressure {
-        let swapped = semi_axes[1] > semi_axes[0];
-        let ratio = semi_axes[0].min(semi_axes[1]) / semi_axes[0].max(semi_axes[1]);
+    pub fn of_peak(peak: f64, semi_axes: SemiAxes, poisson_ratio: f64) -> EllipticPressure {
+        let ratio = semi_axes.minor() / semi_axes.major();
         let b2 = ratio * ratio;
         EllipticPressure {
             semi_axes,
             peak,
             a2: 1.0,
             b2,
-            swapped,
+            swapped: semi_axes.rolling > semi_axes.groove,
             poisson_ratio,
             n_duplications: n_duplications(1.0, b2),
         }
@@ -163,7 +163,7 @@ impl WithSimd for Stresses<'_> {
         } else {
             [0, 1, 2, 3, 4, 5]
         };
-        let scale = 1.0 / self.pressure.semi_axes[0].max(self.pressure.semi_axes[1]);
+        let scale = 1.0 / self.pressure.semi_axes.major();
         for (points, stress) in self.points.chunks(LANES).zip(self.stress.chunks_mut(LANES)) {
             let mut x = [[0.0; LANES]; 3];
             for (i, point) in points.iter().enumerate() {

@@ -116,7 +116,10 @@ fn a_point_load_on_a_curved_surface_is_elastic_to_first_order() {
 #[test]
 fn a_pressure_on_a_curved_surface_is_the_sum_of_its_point_loads() {
     for axes in [[1.0, 0.1], [1.0, 0.7], [0.3, 1.0]] {
-        let (pressure, rules) = (EllipticPressure::of_peak(1.0, axes, NU), CurvatureRules::new());
+        let (pressure, rules) = (
+            EllipticPressure::of_peak(1.0, axes.into(), NU),
+            CurvatureRules::new(),
+        );
         let surface = CurvedSurface::new(&rules, [0.25, -0.03]);
         let mut largest = 0.0f64;
         for place in [
@@ -164,7 +167,7 @@ fn rules_of_the_quadrature_meet_without_a_jump() {
         ([2.7, 5.2], 0.0097),
         ([1.05, 0.6], 0.217),
     ] {
-        let pressure = EllipticPressure::of_peak(share, axes, NU);
+        let pressure = EllipticPressure::of_peak(share, axes.into(), NU);
         let major = f64::max(axes[0], axes[1]);
         let mut largest = 0.0f64;
         for i in 0..24 {
@@ -192,7 +195,7 @@ fn rules_of_the_quadrature_meet_without_a_jump() {
 fn a_point_does_not_depend_on_its_company() {
     let (rules, pressure) = (
         CurvatureRules::new(),
-        EllipticPressure::of_peak(1.0, [1.0, 0.2], NU),
+        EllipticPressure::of_peak(1.0, [1.0, 0.2].into(), NU),
     );
     let surface = CurvedSurface::new(&rules, [0.25, -0.03]);
     let points: Vec<[f64; 3]> = (0..203)

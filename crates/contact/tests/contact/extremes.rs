@@ -30,7 +30,7 @@ fn maximum_shear_is_that_of_the_table() {
         (0.8, 0.530, 0.317),
         (1.0, 0.480, 0.310),
     ] {
-        let found = subsurface([1.0, ratio], NU).maximum_shear;
+        let found = subsurface([1.0, ratio].into(), NU).maximum_shear;
         assert!(
             (found.over_peak_pressure - shear).abs() < 1e-3,
             "b/a = {ratio}: {found:?}"
@@ -62,7 +62,7 @@ fn a_line_has_its_largest_shear_in_closed_form() {
     );
     assert_extreme(
         "line",
-        subsurface([1e7, 1.0], NU).maximum_shear,
+        subsurface([1e7, 1.0].into(), NU).maximum_shear,
         [shear, low],
         1e-6,
     );
@@ -80,7 +80,7 @@ fn a_circle_has_its_largest_stresses_in_closed_form() {
         let z = 0.5 * (low + high);
         if slope(z) > 0.0 { low = z } else { high = z }
     }
-    let found = subsurface([1.0, 1.0], NU);
+    let found = subsurface([1.0, 1.0].into(), NU);
     assert_extreme("shear", found.maximum_shear, [0.5 * difference(low), low], 1e-6);
     assert_extreme("von Mises", found.von_mises, [difference(low), low], 1e-6);
 }
@@ -100,7 +100,7 @@ fn an_ellipse_has_its_largest_stresses_where_the_sum_of_point_loads_has_them() {
         [0.3, 1.0],
     ] {
         let minor = f64::min(axes[0], axes[1]);
-        let found = subsurface(axes, NU);
+        let found = subsurface(axes.into(), NU);
         let shear = |s: [f64; 6]| {
             let s = principal(s);
             0.5 * (s[0] - s[2])
@@ -140,7 +140,7 @@ fn orthogonal_shear_is_that_of_lundberg_and_palmgren() {
         ];
         assert_extreme(
             &format!("b/a = {ratio}"),
-            subsurface([1.0, ratio], NU).orthogonal_shear,
+            subsurface([1.0, ratio].into(), NU).orthogonal_shear,
             expected,
             1e-6,
         );
@@ -148,8 +148,8 @@ fn orthogonal_shear_is_that_of_lundberg_and_palmgren() {
     // The same numbers are in the field itself: a scan of it finds nothing larger.
     let axes = [1.0, 0.12];
     let (found, field) = (
-        subsurface(axes, NU).orthogonal_shear,
-        EllipticPressure::of_peak(1.0, axes, NU),
+        subsurface(axes.into(), NU).orthogonal_shear,
+        EllipticPressure::of_peak(1.0, axes.into(), NU),
     );
     let mut largest = 0.0f64;
     for i in 0..400 {

@@ -9,7 +9,7 @@ use crate::quadrature;
 const NU: f64 = 0.3;
 
 fn unit(axes: [f64; 2]) -> EllipticPressure {
-    EllipticPressure::of_peak(1.0, axes, NU)
+    EllipticPressure::of_peak(1.0, axes.into(), NU)
 }
 
 #[track_caller]
@@ -310,7 +310,7 @@ fn the_sum_of_normal_stresses_is_harmonic() {
 fn far_away_only_the_force_counts() {
     let force = 1.0;
     let field = |axes: [f64; 2], r: f64| {
-        EllipticPressure::of_force(force, axes, NU).stress([0.6 * r, 0.48 * r, 0.64 * r])
+        EllipticPressure::of_force(force, axes.into(), NU).stress([0.6 * r, 0.48 * r, 0.64 * r])
     };
     let gap = |r: f64| {
         let (true_one, spread) = (field([0.3, 0.04], r), field([1.0, 0.8], r));

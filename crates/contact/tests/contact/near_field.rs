@@ -2,7 +2,7 @@
 //! it moves.
 
 use contact::near_field::in_axes;
-use contact::{Groove, LoadedPatch, NearField, RingPoint, Side};
+use contact::{Groove, LoadedPatch, NearField, RingPoint, SemiAxes, Side};
 
 const NU: f64 = 0.3;
 const GROOVE: Groove = Groove {
@@ -16,13 +16,13 @@ const CONTACT: LoadedPatch = LoadedPatch {
     azimuth: 0.0,
     force: 500.0,
     angle: 0.34,
-    semi_axes: [1.05e-3, 0.129e-3],
+    semi_axes: SemiAxes::new(1.05e-3, 0.129e-3),
     patch_angle: 0.34,
-    patch_axes: [2.7e-3, 5.2e-3],
+    patch_axes: SemiAxes::new(2.7e-3, 5.2e-3),
 };
 
 fn peak() -> f64 {
-    1.5 * CONTACT.force / (std::f64::consts::PI * CONTACT.semi_axes[0] * CONTACT.semi_axes[1])
+    1.5 * CONTACT.force / (std::f64::consts::PI * CONTACT.semi_axes.groove * CONTACT.semi_axes.rolling)
 }
 
 /// Added stress over the peak pressure at places of the mesh, m, in its axes.
@@ -74,7 +74,7 @@ fn divergence(reach: f64, x: [f64; 3]) -> f64 {
 /// of it.
 #[test]
 fn the_end_at_the_reach_leaves_little_out() {
-    let patch = CONTACT.patch_axes[1];
+    let patch = CONTACT.patch_axes.rolling;
     let (mut left_out, mut residual, mut inside) = (0.0f64, 0.0f64, 0.0f64);
     for i in 0..30 {
         let distance = patch * (0.5 + 0.15 * i as f64);
@@ -127,7 +127,7 @@ fn stress_is_smooth_as_a_ball_rolls_by() {
             .map(|w| size(&std::array::from_fn(|c| w[1][c] - w[0][c])))
             .fold(0.0, f64::max)
     };
-    let patch = CONTACT.patch_axes[1];
+    let patch = CONTACT.patch_axes.rolling;
     for (from, to, depth, angle) in [
         // Over the ellipse and out of it, below the middle and beside it.
         (-0.5e-3, 0.5e-3, 0.05e-3, 0.34),

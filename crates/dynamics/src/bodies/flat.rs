@@ -67,18 +67,19 @@ impl<const N: usize> FlatBody<N> {
                 .zip(more)
                 .for_each(|(force, more)| *force += more);
         }
-        let moments = forces.iter_mut().skip(3);
-        moments
-            .zip(self.tilted_moments(interval, end))
+        let tilted = self.loads_by_tilt(interval, end);
+        forces
+            .iter_mut()
+            .zip(tilted)
             .for_each(|(force, more)| *force -= more);
         forces
     }
 
-    /// Moments of its loads beyond those of the straight shaft when it ends at `end`, N m.
-    pub fn tilted_moments(&self, interval: Interval, end: &[f64]) -> [f64; 2] {
-        let tilts = [&self.start, end].map(|x| [five(x)[3], five(x)[4]]);
-        self.tilted
-            .map_or([0.0; 2], |loads| loads.moments(interval, tilts))
+    /// Its loads beyond those of the straight shaft when it ends at `end`, N and N m.
+    pub fn loads_by_tilt(&self, interval: Interval, end: &[f64]) -> [f64; 5] {
+        self.tilted.map_or([0.0; 5], |loads| {
+            loads.over(interval, [five(&self.start), five(end)])
+        })
     }
 
     /// Numbers of the free coordinates, ascending: those of the unknowns.

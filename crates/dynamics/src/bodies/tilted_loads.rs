@@ -33,16 +33,19 @@ impl TiltedLoads {
         (loads != TiltedLoads::default()).then_some(loads)
     }
 
-    /// Moments at the end of an interval, or their means over it, beyond those of the straight shaft, N m.
-    pub fn moments(&self, interval: Interval, [start, end]: [[f64; 2]; 2]) -> [f64; 2] {
-        match interval {
+    /// Generalised loads on the shaft beyond those of the straight one, N and N m: at the end of an interval from one
+    /// displacement to another, or their means over it.
+    pub fn over(&self, interval: Interval, shaft: [[f64; 5]; 2]) -> [f64; 5] {
+        let [start, end] = shaft.map(|[.., about_x, about_y]| [about_x, about_y]);
+        let [about_x, about_y] = match interval {
             Interval::Rest => self.at(end),
             Interval::Step(_) => {
                 let between = |share: f64| self.at([0, 1].map(|i| start[i] + share * (end[i] - start[i])));
                 let [a, b] = GAUSS.map(between);
                 [0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])]
             }
-        }
+        };
+        [0.0, 0.0, 0.0, about_x, about_y]
     }
 
     /// Growth of the moments with the tilts, N m, by rows of moments.
@@ -142,9 +145,10 @@ mod tests {
             dt: 1e-5,
         });
         let (start, end) = ([0.01, -0.02], [0.0103, -0.0198]);
-        let mean = LOADS.moments(step, [start, end]);
+        let shaft = |[x, y]: [f64; 2]| [0.0, 0.0, 0.0, x, y];
+        let [.., x, y] = LOADS.over(step, [start, end].map(shaft));
         let work: f64 = (0..2)
-            .map(|i| (mean[i] + [-LOADS.lever[1], LOADS.lever[0]][i]) * (end[i] - start[i]))
+            .map(|i| ([x, y][i] + [-LOADS.lever[1], LOADS.lever[0]][i]) * (end[i] - start[i]))
             .sum();
         assert!((work - potential(end) + potential(start)).abs() < 1e-14);
     }

@@ -197,7 +197,7 @@ fn on_strips(
     site: usize,
 ) -> Option<PatchPoints> {
     let strips = seen.strips[site].filter(|_| seen.forces[site] > 0.0)?;
-    let half_width = model.hertz[site % 2].semi_axes(seen.forces[site])[0];
+    let half_width = model.hertz[site % 2].semi_axes(seen.forces[site]).groove;
     let approach = (seen.approaches[site], 0.0);
     Some(strips.places(&traction.places, half_width, approach, angles[site]))
 }
@@ -208,7 +208,7 @@ fn lines(model: &Model, (seen, angles): (AtEquilibrium<'_>, &[f64]), site: usize
     let strips = seen.strips[site].filter(|_| seen.forces[site] > 0.0);
     strips.map_or_else(Vec::new, |strips| {
         strips
-            .bearing(seen.approaches[site], angles[site], semi_axes.into())
+            .bearing(seen.approaches[site], angles[site], semi_axes)
             .lines
     })
 }

@@ -128,7 +128,7 @@ pub struct Setting<'a> {
 }
 
 /// Damping matrix of the rings, C = mass M + stiffness K.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct RingDamping {
     /// Factor of the mass matrix, 1/s.
     pub mass: f64,

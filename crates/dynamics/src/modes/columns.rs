@@ -1,7 +1,7 @@
 //! The functionals through which interactions, carried masses and constraints act on rings and small dofs.
 
 use ring::VibratingRings;
-use ring::sparse::SparseLoad;
+use ring::sparse::{SparseLoad, sparse_dot};
 
 /// A link of an interaction: its tangent, and what growth it.
 pub struct LinkTangent {
@@ -27,6 +27,12 @@ impl LengthGrowth {
         debug_assert_eq!(*of, ring, "a length of a link sees one ring");
         sum.extend(load.iter().map(|&(k, w)| (k, factor * w)));
     }
+
+    /// The functional of fields of the rings, by group: a^T r.
+    pub fn in_rings<'f>(&self, field: impl Fn(usize) -> &'f [f64]) -> f64 {
+        let ring = self.ring.as_ref();
+        ring.map_or(0.0, |(group, load)| sparse_dot(load, field(*group)))
+    }
 }
 
 /// What a column does.
@@ -44,10 +50,8 @@ pub enum Role {
 pub struct Column {
     /// What it does.
     pub role: Role,
-    /// Ring and generalised load of a unit force on it.
-    pub ring: Option<(usize, SparseLoad)>,
-    /// The same of the small dofs.
-    pub small: SparseLoad,
+    /// Growth of the functional, which is the generalised load of a unit force too.
+    pub growth: LengthGrowth,
 }
 
 /// The columns of link_tangents, side by side those of each, then of carried masses and constraints, and `joints`.
@@ -56,21 +60,17 @@ pub fn columns(
     link_tangents: &[LinkTangent],
     joints: Vec<LengthGrowth>,
 ) -> Vec<Column> {
-    let column = |role, growth: LengthGrowth| Column {
-        role,
-        ring: growth.ring,
-        small: growth.small,
-    };
+    let column = |role, growth| Column { role, growth };
     let mut columns = Vec::new();
     for (c, link_tangent) in link_tangents.iter().enumerate() {
         let lengths = link_tangent.lengths.iter().enumerate();
         columns.extend(lengths.map(|(row, growth)| column(Role::Link(c, row), growth.clone())));
     }
     for (i, group) in groups.iter().enumerate() {
-        let of_group = |role, load: &SparseLoad| Column {
-            role,
-            ring: Some((i, load.clone())),
-            small: SparseLoad::new(),
+        let of_group = |role, load: &SparseLoad| {
+            let ring = Some((i, load.clone()));
+            let small = SparseLoad::new();
+            column(role, LengthGrowth { ring, small })
         };
         for ring in group.rings() {
             let lumps = ring.lumps().iter();

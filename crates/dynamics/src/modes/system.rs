@@ -21,7 +21,7 @@ use rayon::prelude::*;
 
 use super::blocks::{Answer, of_each_group, together};
 use super::columns::{Column, LengthGrowth, LinkTangent, Role, columns};
-use super::small::SmallDofs;
+use super::small::{SmallDofs, SmallEntries};
 use crate::error::DynamicsError;
 use ring::VibratingRings;
 use ring::sparse::{SparseLoad, sparse_dot};
@@ -127,8 +127,9 @@ impl VibratingSystem {
 
     /// Adds the load of a force on a column.
     fn add_force(&self, column: &Column, force: f64, to: &mut [f64]) {
-        let of_group = column.ring.iter().map(|(i, load)| (self.start(*i), load));
-        let small = (self.start(self.groups.len()), &column.small);
+        let LengthGrowth { ring, small } = &column.growth;
+        let of_group = ring.iter().map(|(i, load)| (self.start(*i), load));
+        let small = (self.start(self.groups.len()), small);
         for (start, load) in of_group.chain([small]) {
             load.iter().for_each(|&(k, value)| to[start + k] += value * force);
         }
@@ -137,24 +138,18 @@ impl VibratingSystem {
     /// S^-1 of the columns of one group.
     fn answer(&self, i: usize) -> Answer {
         let ring = &self.groups[i];
-        let of_ring = |column: &Column| column.ring.as_ref().is_some_and(|r| r.0 == i);
-        let numbers: Vec<usize> = (0..self.columns.len())
-            .filter(|&j| of_ring(&self.columns[j]))
-            .collect();
+        let columns = self.columns.iter().enumerate();
+        let own = columns.filter_map(|(j, column)| match &column.growth.ring {
+            Some((group, load)) if *group == i => Some((j, load)),
+            _ => None,
+        });
+        let (numbers, loads): (Vec<usize>, Vec<&SparseLoad>) = own.unzip();
         let mut columns = vec![0.0; ring.n() * numbers.len()];
-        for (column, &j) in columns.chunks_exact_mut(ring.n()).zip(&numbers) {
-            if let Some((_, load)) = &self.columns[j].ring {
-                load.iter().for_each(|&(k, value)| column[k] += value);
-            }
+        for (column, load) in columns.chunks_exact_mut(ring.n()).zip(loads) {
+            load.iter().for_each(|&(k, value)| column[k] += value);
         }
         ring.solve(&mut columns, numbers.len());
         Answer { numbers, columns }
-    }
-
-    /// Motion a^T r of the column `j` in a field of its ring.
-    fn motion(&self, j: usize, field: &[f64]) -> f64 {
-        let ring = self.columns[j].ring.as_ref();
-        ring.map_or(0.0, |(_, load)| sparse_dot(load, field))
     }
 
     /// The dense matrix over (t in units of force, p), row-major.
@@ -166,12 +161,12 @@ impl VibratingSystem {
         for (answer, ring) in self.answers.iter().zip(&self.groups) {
             for (&k, x) in answer.numbers.iter().zip(answer.columns.chunks_exact(ring.n())) {
                 for &j in &answer.numbers {
-                    motion[n * j + k] = -self.force_unit * self.motion(j, x);
+                    motion[n * j + k] = -self.force_unit * self.columns[j].growth.in_rings(|_| x);
                 }
             }
         }
         for (j, column) in self.columns.iter().enumerate() {
-            for &(k, value) in &column.small {
+            for &(k, value) in &column.growth.small {
                 motion[n * j + n_columns + k] += value;
             }
         }
@@ -184,7 +179,7 @@ impl VibratingSystem {
                     matrix[n * j + c] -= share * motion[n * k + c];
                 }
             }
-            for &(k, value) in &self.columns[j].small {
+            for &(k, value) in &self.columns[j].growth.small {
                 matrix[n * (n_columns + k) + j] += value * self.force_unit;
             }
         }
@@ -212,32 +207,30 @@ impl VibratingSystem {
         }
     }
 
-    /// Adds coefficient(column) times its own motion to the forces: K of contacts, M of carried masses.
-    fn add_columns(&self, y: &[f64], result: &mut [f64], force: impl Fn(usize, &[f64]) -> f64) {
-        if self.columns.is_empty() {
-            return;
-        }
-        let small = self.small_part(y);
-        let length = |column: &Column| {
-            let ring = column.ring.as_ref();
-            ring.map_or(0.0, |(i, load)| sparse_dot(load, self.part(y, *i)))
-                + sparse_dot(&column.small, small)
-        };
-        let lengths: Vec<f64> = self.columns.iter().map(length).collect();
-        for (j, column) in self.columns.iter().enumerate() {
-            self.add_force(column, force(j, &lengths), result);
-        }
-    }
-
-    /// A product of the rings alone.
+    /// A product with a matrix: of the rings, of the small dofs, and the forces of the columns by all their lengths: K
+    /// of contacts, M of carried masses.
     fn product(
         &self,
-        x: &[f64],
-        n_vectors: usize,
-        of: fn(&VibratingRings, &[f64], usize) -> Vec<f64>,
+        (x, n_vectors): (&[f64], usize),
+        of_rings: fn(&VibratingRings, &[f64], usize) -> Vec<f64>,
+        of_small: &SmallEntries,
+        force: impl Fn(usize, &[f64]) -> f64,
     ) -> Vec<f64> {
-        let parts = of_each_group(&self.groups, (x, self.n()), |group, y| of(group, &y, n_vectors));
-        together(&self.groups, &parts, [self.n(), n_vectors])
+        let (n, start) = (self.n(), self.start(self.groups.len()));
+        let parts = of_each_group(&self.groups, (x, n), |group, y| of_rings(group, &y, n_vectors));
+        let mut result = together(&self.groups, &parts, [n, n_vectors]);
+        for (y, result) in x.chunks_exact(n).zip(result.chunks_exact_mut(n)) {
+            let small = &y[start..];
+            SmallDofs::add_product(of_small, small, &mut result[start..]);
+            let of_column = |column: &Column| {
+                column.growth.in_rings(|i| self.part(y, i)) + sparse_dot(&column.growth.small, small)
+            };
+            let lengths: Vec<f64> = self.columns.iter().map(of_column).collect();
+            for (j, column) in self.columns.iter().enumerate() {
+                self.add_force(column, force(j, &lengths), result);
+            }
+        }
+        result
     }
 
     /// Corrects the groups' answers for what couples them; of `small`, the loads on the small dofs, column-major, the
@@ -248,11 +241,8 @@ impl VibratingSystem {
         let n = n_columns + n_small;
         let mut unknowns = vec![0.0; n * n_vectors];
         for (vector, rhs) in unknowns.chunks_exact_mut(n).enumerate() {
-            let motion = |ring: usize, load: &SparseLoad| {
-                sparse_dot(load, &parts[ring][self.groups[ring].n() * vector..])
-            };
-            let rings = self.columns.iter().map(|column| column.ring.as_ref());
-            let motions = rings.map(|ring| ring.map_or(0.0, |(i, load)| motion(*i, load)));
+            let field = |i: usize| &parts[i][self.groups[i].n() * vector..];
+            let motions = self.columns.iter().map(|column| column.growth.in_rings(field));
             let motions: Vec<f64> = motions.collect();
             for j in 0..n_columns {
                 rhs[j] = self.law(j).1.iter().map(|&(k, share)| share * motions[k]).sum();
@@ -276,29 +266,23 @@ impl EigenProblem for VibratingSystem {
     }
 
     fn stiffness(&self, x: &[f64], n_vectors: usize) -> Vec<f64> {
-        let mut result = self.product(x, n_vectors, VibratingRings::stiffness);
-        let start = self.start(self.groups.len());
-        for (y, result) in x.chunks_exact(self.n()).zip(result.chunks_exact_mut(self.n())) {
-            SmallDofs::add_product(&self.small.stiffness, self.small_part(y), &mut result[start..]);
-            self.add_columns(y, result, |j, lengths| match self.columns[j].role {
+        let (rings, small) = (VibratingRings::stiffness, &self.small.stiffness);
+        self.product((x, n_vectors), rings, small, |j, lengths| {
+            match self.columns[j].role {
                 Role::Link(..) => self.law(j).1.iter().map(|&(k, share)| share * lengths[k]).sum(),
                 Role::Mass(_) | Role::Constraint => 0.0,
-            });
-        }
-        result
+            }
+        })
     }
 
     fn mass(&self, x: &[f64], n_vectors: usize) -> Vec<f64> {
-        let mut result = self.product(x, n_vectors, VibratingRings::mass);
-        let start = self.start(self.groups.len());
-        for (y, result) in x.chunks_exact(self.n()).zip(result.chunks_exact_mut(self.n())) {
-            SmallDofs::add_product(&self.small.mass, self.small_part(y), &mut result[start..]);
-            self.add_columns(y, result, |j, lengths| match self.columns[j].role {
+        let (rings, small) = (VibratingRings::mass, &self.small.mass);
+        self.product((x, n_vectors), rings, small, |j, lengths| {
+            match self.columns[j].role {
                 Role::Mass(mass) => mass * lengths[j],
                 Role::Link(..) | Role::Constraint => 0.0,
-            });
-        }
-        result
+            }
+        })
     }
 
     fn solve(&self, b: Vec<f64>, n_vectors: usize) -> Vec<f64> {

@@ -210,9 +210,9 @@ fn finish_shaft(next: &mut MotionState, parts: &BearingParts, solution: &StepSol
     if let Some(large) = &parts.shaft.large_tilt {
         next.ledger.frame_work -= large.work(solution.shaft);
     }
-    let moments = parts.shaft.tilted_moments(Interval::Step(step), &solution.shaft);
-    for (i, moment) in [3, 4].into_iter().zip(moments) {
-        next.ledger.load_work += moment * (solution.shaft[i] - parts.shaft.dofs[i].start[0]);
+    let loads = parts.shaft.loads_by_tilt(Interval::Step(step), &solution.shaft);
+    for (dof, load) in loads.iter().enumerate() {
+        next.ledger.load_work += load * (solution.shaft[dof] - parts.shaft.dofs[dof].start[0]);
     }
     next.shaft = solution.shaft;
     [next.shaft_velocity, next.shaft_acceleration] =

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use contact::{BySide, Meridian, Side};
+use contact::{BySide, Meridian, SemiAxes, Side};
 use ring::ElasticStep;
 
 use super::free_state::{ContactTraction, FreeState};
@@ -292,12 +292,12 @@ impl Motion<'_> {
         }
     }
 
-    /// The traction of a contact, on a real surface at the places of its strips; its patch has these semi-axes, m.
+    /// The traction of a contact, on a real surface at the places of its strips; its patch has these semi-axes.
     fn traction_at(
         &self,
         (state, start): (&MotionState, f64),
         (index, site): (usize, &Site),
-        semi_axes: [f64; 2],
+        semi_axes: SemiAxes,
         traction: &Arc<Traction>,
     ) -> Arc<Traction> {
         match self.strips_at((state, start), (site.ball, site.side)) {
@@ -309,7 +309,7 @@ impl Motion<'_> {
                 );
                 let angle = state.angles[index];
                 Arc::new(Traction {
-                    places: strips.places(&traction.places, semi_axes[0], approach, angle),
+                    places: strips.places(&traction.places, semi_axes.groove, approach, angle),
                     ..Traction::clone(traction)
                 })
             }

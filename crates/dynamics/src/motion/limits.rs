@@ -68,7 +68,7 @@ impl Motion<'_> {
             let is_beyond = match self.model.surfaces.edges(side) {
                 Some(_) => bearing.is_some_and(|bearing| bearing.kind == EllipseKind::Edge),
                 None => {
-                    let reach = axes[0] / self.model.geometry.groove_radius(side);
+                    let reach = axes.groove / self.model.geometry.groove_radius(side);
                     let shoulders = &self.model.shoulders;
                     self.rings[side.index()].as_ref().is_some_and(beyond)
                         || shoulders.is_beyond(side, state.angles[index], reach)

@@ -220,7 +220,7 @@ impl Motion<'_> {
             site,
             weights: std::iter::once(patch.weights).chain(traction).collect(),
             slope,
-            half_angle: shape.semi_axes[0] / ring.groove.groove_radius,
+            half_angle: shape.semi_axes.groove / ring.groove.groove_radius,
         })
     }
 

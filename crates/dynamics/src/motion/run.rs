@@ -297,7 +297,7 @@ fn moving_ring(
     let made: Vec<_> = made.collect();
     let own = |frame: Frame| BodySettings {
         partner: partner(model, side),
-        damping: settings.rayleigh,
+        damping: [settings.rayleigh.mass, settings.rayleigh.stiffness],
         backend: model.backend,
         frame,
     };

@@ -4,6 +4,7 @@ use contact::Meridian;
 
 use super::free_state::FreeState;
 use super::ledger::Ledger;
+use crate::effects::RingDamping;
 use crate::interactions::contact_damping::ContactDamping;
 use crate::interactions::discrete_gradient::ContactScheme;
 use crate::interactions::raceway_contact::SiteState;
@@ -29,8 +30,8 @@ pub struct MotionSettings {
     pub slip: SlipRatios,
     /// Contact damping, when the scene calls for it.
     pub contact_damping: Option<ContactDamping>,
-    /// Rayleigh damping: factors of M and of K in C, 1/s and s.
-    pub rayleigh: [f64; 2],
+    /// Rayleigh damping of the rings.
+    pub rayleigh: RingDamping,
 }
 
 impl MotionSettings {
@@ -44,7 +45,7 @@ impl MotionSettings {
             speeds: speeds.into(),
             slip: [0.0; 2],
             contact_damping: None,
-            rayleigh: [0.0; 2],
+            rayleigh: RingDamping::default(),
         }
     }
 }

@@ -97,12 +97,8 @@ impl Motion<'_> {
     ) -> Option<StripBearing> {
         let index = 2 * ball + side.index();
         let strips = self.strips_at((state, self.time(state.step)), (ball, side))?;
-        let [half_width, rolling] = self.model.hertz[side.index()].semi_axes(force);
-        Some(strips.bearing(
-            state.approaches[index],
-            state.angles[index],
-            (half_width, rolling),
-        ))
+        let axes = self.model.hertz[side.index()].semi_axes(force);
+        Some(strips.bearing(state.approaches[index], state.angles[index], axes))
     }
 
     /// The strips under a contact as it stands in a state at a time, s; None: its raceway has none.

@@ -34,7 +34,7 @@ fn without_curvature_the_contact_with_the_larger_moment_of_spin_controls() {
     let ball = &solution.balls[0];
     let moment = |side: Side| {
         let ellipse = model.ellipse(side, ball.contact(side).force_n);
-        let [a, b] = ellipse.semi_axes;
+        let [a, b] = ellipse.semi_axes.into();
         let (_, e) = contact::elliptic::complete_elliptic(1.0 - (b / a).powi(2));
         0.375 * mu * ball.contact(side).force_n * a * e
     };

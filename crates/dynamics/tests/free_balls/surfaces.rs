@@ -176,7 +176,7 @@ fn at_a_shoulder_balls_roll_steadily_with_the_traction_of_what_is_left() {
     let model = freed(thrust(2000.0), traction, &speeds);
     let before = equilibrium(&model).balls[0].outer;
     let groove = model.geometry.groove_radius(Side::Outer);
-    let shoulder = before.contact_angle_rad + 0.5 * before.semi_axes_m[0] / groove;
+    let shoulder = before.contact_angle_rad + 0.5 * before.semi_axes_m.groove / groove;
     let law = StripLaw::new(&model.hertz[1], groove);
     let shoulders = Some(-0.6..=shoulder);
     let profiles = Profiles::default();
@@ -199,7 +199,7 @@ fn at_a_shoulder_balls_roll_steadily_with_the_traction_of_what_is_left() {
     let moment = contact.action[4] / (mu * force * a);
     let radius = model.ellipse(Side::Outer, force).radius;
     // By a second way: 1000 strips of the load that is left, 41 places along each.
-    let b = a * before.semi_axes_m[1] / before.semi_axes_m[0];
+    let b = a * before.semi_axes_m.rolling / before.semi_axes_m.groove;
     let (mut sum, mut load) = (0.0, 0.0);
     for k in 0..1000 {
         let y = -1.0 + (1.0 + tau) * (k as f64 + 0.5) / 1000.0;

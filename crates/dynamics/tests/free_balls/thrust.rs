@@ -88,7 +88,7 @@ fn both_contacts_spin_under_thrust() {
     assert!((0.3..0.7).contains(&share), "{share}");
     // 3/8 mu Q a E at the outer contact, which has the smaller of both, times all spin.
     let load = found.state.forces[1].norm();
-    let [a, b] = found.model.hertz[1].semi_axes(load);
+    let [a, b] = found.model.hertz[1].semi_axes(load).into();
     let (_, e) = contact::elliptic::complete_elliptic(1.0 - (b / a).powi(2));
     let moment = 0.375 * 0.07 * load * a * e;
     let alone = 18.0 * moment * (inner + outer).abs() / found.speed;

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use body::SeatTie;
 use contact::Side;
+use dynamics::effects::RingDamping;
 use dynamics::kinematics::Speed;
 use dynamics::motion::{Integrator, Motion, MotionSettings, MotionState, StepCache};
 use dynamics::{Backend, Hold, Model, RingModel, ShaftDof};
@@ -105,7 +106,10 @@ fn the_ledger_closes_and_losses_take_energy() {
         ..settings()
     };
     let damped = MotionSettings {
-        rayleigh: [20.0, 1e-7],
+        rayleigh: RingDamping {
+            mass: 20.0,
+            stiffness: 1e-7,
+        },
         ..settings()
     };
     for (of, settings) in [

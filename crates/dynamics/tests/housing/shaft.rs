@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use body::SeatTie;
 use contact::Side;
+use dynamics::effects::RingDamping;
 use dynamics::kinematics::Speed;
 use dynamics::modes::bearing_modes;
 use dynamics::motion::{Motion, MotionSettings, MotionState, StepCache};
@@ -200,7 +201,10 @@ fn ring_and_shaft_have_the_modes_of_one_mesh() {
 #[test]
 fn the_ledger_of_a_turning_shaft_closes() {
     let damped = MotionSettings {
-        rayleigh: [20.0, 1e-7],
+        rayleigh: RingDamping {
+            mass: 20.0,
+            stiffness: 1e-7,
+        },
         ..settings()
     };
     for settings in [settings(), damped] {

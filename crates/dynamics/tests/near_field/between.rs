@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use contact::near_field::in_axes;
 use contact::patch_shape::PatchShape;
-use contact::{RingPoint, Side};
+use contact::{RingPoint, SemiAxes, Side};
 use fem::stress::von_mises;
 
 use crate::ANGLE;
@@ -26,7 +26,7 @@ fn fixed_patch() -> PatchShape {
     PatchShape {
         azimuth: 0.0,
         angle: ANGLE,
-        semi_axes: [2.5e-3, 3.5e-3],
+        semi_axes: SemiAxes::new(2.5e-3, 3.5e-3),
         truncated: false,
     }
 }

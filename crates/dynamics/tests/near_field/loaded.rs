@@ -2,7 +2,7 @@
 
 use contact::patch_shape::PatchShape;
 use contact::quadrature::PressureRule;
-use contact::{Patch, RacewaySurface, RingPoint, Side};
+use contact::{Patch, RacewaySurface, RingPoint, SemiAxes, Side};
 use dynamics::model::elastic;
 use dynamics::statics::StaticRing;
 use dynamics::{Hold, Model, RingModel};
@@ -36,7 +36,7 @@ impl Ring {
     }
 
     /// Semi-axes of the Hertz ellipse of the force, m.
-    pub fn hertz_axes(&self) -> [f64; 2] {
+    pub fn hertz_axes(&self) -> SemiAxes {
         self.model.hertz[self.side.index()].semi_axes(self.force)
     }
 

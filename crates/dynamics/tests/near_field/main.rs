@@ -12,7 +12,7 @@ use std::f64::consts::PI;
 use std::sync::Arc;
 
 use contact::near_field::in_axes;
-use contact::{LoadedPatch, NearField, RingPoint, Side};
+use contact::{LoadedPatch, NearField, RingPoint, SemiAxes, Side};
 use dynamics::{ContactMode, Model, RingModel};
 use fem::stress::von_mises;
 use loaded::Ring;
@@ -62,13 +62,13 @@ fn model(side: Side, ring: RingModel) -> Model {
 }
 
 /// Points of a ring under a contact at an azimuth, from places as [`PLACES`].
-fn points(ring: &RingModel, azimuth: f64, [a, b]: [f64; 2], places: &[[f64; 3]]) -> Vec<RingPoint> {
+fn points(ring: &RingModel, azimuth: f64, axes: SemiAxes, places: &[[f64; 3]]) -> Vec<RingPoint> {
     let place = |&[x, y, z]: &[f64; 3]| {
-        let angle = ANGLE + x * a / ring.groove.groove_radius;
+        let angle = ANGLE + x * axes.groove / ring.groove.groove_radius;
         RingPoint {
-            azimuth: azimuth + y * b / ring.groove.radius(angle),
+            azimuth: azimuth + y * axes.rolling / ring.groove.radius(angle),
             angle,
-            depth: z * b,
+            depth: z * axes.rolling,
         }
     };
     places.iter().map(place).collect()

@@ -50,7 +50,7 @@ fn means(values: &[[f64; 6]]) -> Vec<[f64; 6]> {
 fn resolved(side: Side) -> Resolved {
     let rough = model(side, ring(side, Level::hex8(18, 4, 1, 1), Hold::Clamped));
     let hertz = rough.hertz[side.index()];
-    let [a, b] = hertz.semi_axes(FORCE);
+    let [a, b] = hertz.semi_axes(FORCE).into();
     let groove = rough.ring(side).unwrap().groove;
     let size = |axis: f64, radius: f64| [axis / ELEMENTS / radius, 1.25 * axis / radius];
     let grading = Grading {

@@ -1,7 +1,7 @@
 //! A step begins with what the one before has found: of periodic rings in its pass over the harmonics, of others of
 //! K and M on its last state.
 
-use dynamics::effects::Gravity;
+use dynamics::effects::{Gravity, RingDamping};
 use dynamics::motion::RingState;
 use dynamics::motion::{Integrator, Ladder};
 use input::Schedule;
@@ -37,7 +37,10 @@ fn a_step_from_its_state_alone_has_the_same_bits() {
             Hold::MeanMotion,
             MotionSettings {
                 integrator: Integrator::chung_hulbert(0.8),
-                rayleigh: [300.0, 2e-8],
+                rayleigh: RingDamping {
+                    mass: 300.0,
+                    stiffness: 2e-8,
+                },
                 ..conserving.clone()
             },
         ),

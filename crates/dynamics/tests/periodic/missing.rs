@@ -5,7 +5,7 @@ use dynamics::motion::StepCache;
 use std::sync::Arc;
 
 use contact::Side;
-use dynamics::effects::{FrameRotation, Gravity};
+use dynamics::effects::{FrameRotation, Gravity, RingDamping};
 use dynamics::kinematics::Speed;
 use dynamics::motion::{Integrator, Motion, MotionSettings, check_supported};
 use dynamics::{Backend, Hold, Model, StaticSolver};
@@ -263,7 +263,10 @@ fn a_step_of_rings_with_a_keyway_has_the_same_bits_from_its_state_alone() {
         model.effects.push(Box::new(gravity));
         let settings = MotionSettings {
             integrator: Integrator::chung_hulbert(0.8),
-            rayleigh: [300.0, 2e-8],
+            rayleigh: RingDamping {
+                mass: 300.0,
+                stiffness: 2e-8,
+            },
             ..MotionSettings::conserving(dt, speed)
         };
         let start = statics(&model, "cyclic");

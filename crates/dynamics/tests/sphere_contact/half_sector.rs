@@ -3,7 +3,7 @@
 
 use std::f64::consts::PI;
 
-use contact::{Groove, Side};
+use contact::{Groove, SemiAxes, Side};
 use dynamics::Hold;
 use fem::facet;
 use fem::quadrature::quadrilateral;
@@ -32,7 +32,7 @@ const STIFF: f64 = 1e5;
 #[derive(Clone, Copy, Debug)]
 pub struct Place {
     pub angle: f64,
-    pub semi_axes: [f64; 2],
+    pub semi_axes: SemiAxes,
 }
 
 /// A facet of the raceway under one pressure.
@@ -68,7 +68,7 @@ impl Raceway {
     /// Cells of the same sizes on a half-space instead of a ring.
     pub fn on_half_space(side: Side, place: Place, finer: f64) -> Raceway {
         let own = groove(side);
-        let [a, b] = place.semi_axes;
+        let [a, b] = place.semi_axes.into();
         let counts = [0, 1].map(|k| (REACH[k] * ELEMENTS[k] * finer).round());
         let step = [
             REACH[0] * a / own.groove_radius,
@@ -124,7 +124,7 @@ fn half_sector(side: Side, place: Place, finer: f64) -> Mesh {
     let own = groove(side);
     let edge = (own.side.sign() * (shoulder - own.centre_radius) / own.groove_radius).acos();
     let axial = own.side.sign() * place.angle;
-    let [a, b] = place.semi_axes;
+    let [a, b] = place.semi_axes.into();
     let fine = |axis: f64, k: usize, reach: f64, radius: f64| {
         [axis / (ELEMENTS[k] * finer) / radius, reach * axis / radius]
     };
@@ -165,8 +165,8 @@ fn half_sector(side: Side, place: Place, finer: f64) -> Mesh {
 fn cells(mesh: &Mesh, side: Side, place: Place) -> Vec<Cell> {
     let own = groove(side);
     let reach = [
-        REACH[0] * place.semi_axes[0] / own.groove_radius,
-        REACH[1] * place.semi_axes[1] / own.radius(place.angle),
+        REACH[0] * place.semi_axes.groove / own.groove_radius,
+        REACH[1] * place.semi_axes.rolling / own.radius(place.angle),
     ];
     let is_near = |f: &&Facet| {
         let nodes: Vec<[f64; 3]> = mesh.facet_nodes(**f).map(|n| mesh.nodes[n]).collect();

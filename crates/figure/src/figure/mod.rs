@@ -3,6 +3,7 @@
 pub mod images;
 
 use crate::axis::Axis;
+use crate::point::DataPoint;
 use crate::series::Series;
 use crate::surface::Surface;
 
@@ -26,7 +27,7 @@ pub struct Figure {
 /// A text at a point of the data.
 #[derive(Clone, Debug)]
 pub(crate) struct Label {
-    pub at: [f64; 2],
+    pub at: DataPoint,
     pub text: String,
 }
 
@@ -65,7 +66,7 @@ impl Figure {
     }
 
     /// Writes a short text beside a point of the data, where there is room.
-    pub fn label(mut self, at: [f64; 2], text: impl Into<String>) -> Figure {
+    pub fn label(mut self, at: DataPoint, text: impl Into<String>) -> Figure {
         self.labels.push(Label {
             at,
             text: text.into(),

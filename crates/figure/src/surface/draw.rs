@@ -4,6 +4,7 @@ use plotters::prelude::*;
 use plotters::style::text_anchor::HPos;
 
 use super::Surface;
+use crate::DataPoint;
 use crate::canvas::{Canvas, Drawn, units, write};
 use crate::layout::Span;
 use crate::marks::Pen;
@@ -21,7 +22,11 @@ pub(crate) fn draw_surface(surface: &Surface, bar: &(Rect, Span), pen: &Pen, can
     let colour = |level: usize| palette::on_map(surface.map, level as f64 / (LEVELS - 1) as f64);
     for triangle in &surface.triangles {
         for (level, part) in bands(triangle, span.range) {
-            let corners: Vec<_> = part.iter().filter_map(|&p| pen.pixel(p)).map(units).collect();
+            let corners: Vec<_> = part
+                .iter()
+                .filter_map(|&p| pen.pixel(p.into()))
+                .map(units)
+                .collect();
             // A thin line of the same colour hides the seams between neighbours.
             canvas.draw(&Polygon::new(corners.clone(), colour(level).filled()))?;
             let outline = corners.iter().chain(corners.first()).copied().collect::<Vec<_>>();
@@ -36,7 +41,8 @@ pub(crate) fn draw_surface(surface: &Surface, bar: &(Rect, Span), pen: &Pen, can
         for run in levels.chunk_by(PartialEq::eq) {
             let ends = [column, column + run.len()];
             column = ends[1];
-            let corner = |x: usize, y: usize| pen.pixel([surface.x_edges[x], surface.y_edges[y]]);
+            let corner =
+                |x: usize, y: usize| pen.pixel(DataPoint::new(surface.x_edges[x], surface.y_edges[y]));
             let corners = (corner(ends[0], row + 1), corner(ends[1], row));
             let (Some(level), (Some(a), Some(b))) = (run[0], corners) else {
                 continue;

@@ -126,7 +126,7 @@ pub use self::quasi_static::QuasiStatic;
 pub use self::ring::{FlexibleRing, MeshFiles, Ring, Support};
 pub use self::ring_inertia::RingInertia;
 pub use self::ring_name::RingName;
-pub use self::section::{MeshedSection, SectionElement};
+pub use self::section::{MeshedSection, SectionElement, ShoulderDiameters};
 pub use self::several::{
     AnyScene, BearingOnShaft, CommonShaft, ON_SHAFT, Pairing, RigidShaft, SeveralScene, ShaftKind, ShaftLoad,
     SpringPairing, names_of_bearings, overrides_of_types,

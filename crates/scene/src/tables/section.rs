@@ -37,11 +37,20 @@ pub enum SectionElement {
     Tet10,
 }
 
+/// Diameters of the shoulders beside a groove, m.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ShoulderDiameters {
+    /// On the side of lower z.
+    pub at_low_z: f64,
+    /// On the side of higher z.
+    pub at_high_z: f64,
+}
+
 /// A ring's section and the fineness of its mesh.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MeshedSection {
-    /// Diameters of the shoulders beside the groove, m, at -z and at +z.
-    pub shoulder_diameters: [f64; 2],
+    /// Diameters of the shoulders beside the groove.
+    pub shoulder_diameters: ShoulderDiameters,
     /// Element kind.
     pub element: SectionElement,
     /// Elements round the ring, a multiple of the number of balls.
@@ -82,12 +91,13 @@ impl MeshedSection {
                 bearing.outer_groove_radius,
             ),
         };
+        let shoulders = self.shoulder_diameters;
         RingSection {
             side,
             seat_diameter,
             raceway_diameter,
             groove_radius,
-            shoulder_diameters: self.shoulder_diameters,
+            shoulder_diameters: [shoulders.at_low_z, shoulders.at_high_z],
             width: bearing.width,
             groove_offset: 0.0,
             groove_elements: self.groove_elements,
@@ -140,8 +150,13 @@ impl RawSection {
             grading,
             "expected 1 (uniform) to 3",
         );
+        let [at_low_z, at_high_z] = match (bearing, &self.shoulder_diameters) {
+            (None, _) => [0.0; 2],
+            (_, Some(typed)) => typed.each_ref().map(|diameter| diameter.si()),
+            (Some(bearing), None) => [shoulder_by_rule(ring, bearing, assumed); 2],
+        };
         MeshedSection {
-            shoulder_diameters: self.shoulders(ring, bearing, assumed),
+            shoulder_diameters: ShoulderDiameters { at_low_z, at_high_z },
             element: self.element,
             sectors,
             groove_elements,
@@ -149,29 +164,6 @@ impl RawSection {
             shoulder_elements,
             grading,
         }
-    }
-
-    /// Diameters of the shoulders, m: typed, or by the rule above.
-    fn shoulders(&self, ring: RingName, bearing: Option<&Bearing>, assumed: &mut Vec<String>) -> [f64; 2] {
-        let Some(bearing) = bearing else { return [0.0; 2] };
-        if let Some(typed) = &self.shoulder_diameters {
-            return [typed[0].si(), typed[1].si()];
-        }
-        let (bottom, groove, inwards) = match ring {
-            RingName::Inner => (bearing.inner_raceway_diameter, bearing.inner_groove_radius, 1.0),
-            RingName::Outer => (bearing.outer_raceway_diameter, bearing.outer_groove_radius, -1.0),
-        };
-        let edge = bearing.free_contact_angle() + BEYOND_CONTACT;
-        let height = (groove * (1.0 - edge.cos())).max(SHOULDER_HEIGHT * bearing.ball_diameter);
-        let diameter = ten_digits(bottom + inwards * 2.0 * height);
-        assumed.push(format!(
-            "{}.section.shoulder_diameters are {:.4} mm on both sides, {:.2} ball diameters above the groove; a \
-             catalogue or a drawing may give others",
-            ring.key(),
-            1e3 * diameter,
-            height / bearing.ball_diameter
-        ));
-        [diameter; 2]
     }
 
     /// The mesh must repeat from ball to ball.
@@ -223,18 +215,35 @@ impl RawSection {
     }
 }
 
+/// Diameter of the shoulders, m, by the rule above.
+fn shoulder_by_rule(ring: RingName, bearing: &Bearing, assumed: &mut Vec<String>) -> f64 {
+    let (bottom, groove, inwards) = match ring {
+        RingName::Inner => (bearing.inner_raceway_diameter, bearing.inner_groove_radius, 1.0),
+        RingName::Outer => (bearing.outer_raceway_diameter, bearing.outer_groove_radius, -1.0),
+    };
+    let edge = bearing.free_contact_angle() + BEYOND_CONTACT;
+    let height = (groove * (1.0 - edge.cos())).max(SHOULDER_HEIGHT * bearing.ball_diameter);
+    let diameter = ten_digits(bottom + inwards * 2.0 * height);
+    assumed.push(format!(
+        "{}.section.shoulder_diameters are {:.4} mm on both sides, {:.2} ball diameters above the groove; a catalogue \
+         or a drawing may give others",
+        ring.key(),
+        1e3 * diameter,
+        height / bearing.ball_diameter
+    ));
+    diameter
+}
+
 /// The shoulders of the two rings face each other across the cage: they must not meet.
 pub fn check_gap(inner: &MeshedSection, outer: &MeshedSection, problems: &mut Problems) {
-    for (i, (a, b)) in inner
-        .shoulder_diameters
-        .iter()
-        .zip(outer.shoulder_diameters)
-        .enumerate()
-    {
+    let (inner, outer) = (inner.shoulder_diameters, outer.shoulder_diameters);
+    let below = (inner.at_low_z, outer.at_low_z);
+    let above = (inner.at_high_z, outer.at_high_z);
+    for (i, (a, b)) in [below, above].into_iter().enumerate() {
         problems.require(
-            *a < b,
+            a < b,
             &format!("inner.section.shoulder_diameters[{i}]"),
-            Quantity::<LENGTH>::about(*a),
+            Quantity::<LENGTH>::about(a),
             format!(
                 "it must be less than outer.section.shoulder_diameters[{i}], which is {}, or the rings touch",
                 Quantity::<LENGTH>::about(b)

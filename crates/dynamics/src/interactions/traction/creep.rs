@@ -10,6 +10,8 @@
 //! C_11 for Poisson's ratio 0.25 by b/a, b the semi-axis along the rolling direction; across it the coefficient C_22 is
 //! a quarter less, and C_11 stands for both. Q/(a b) goes with Q^(1/3), so a light load is no special case.
 
+use contact::SemiAxes;
+
 /// How the slope at small slip is found.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Creep {
@@ -32,8 +34,8 @@ pub struct RollingContact {
     pub speed: f64,
     /// Force, N.
     pub force: f64,
-    /// Semi-axes along the groove and along the rolling direction, m.
-    pub semi_axes: [f64; 2],
+    /// Semi-axes of the ellipse, m.
+    pub semi_axes: SemiAxes,
     /// Combined shear modulus, 2/G = 1/G_1 + 1/G_2, Pa.
     pub shear_modulus: f64,
 }
@@ -44,7 +46,7 @@ impl Creep {
         let ratio = match self {
             Creep::Ratio(ratio) => *ratio,
             Creep::Elastic => {
-                let [a, b] = rolling.semi_axes;
+                let [a, b] = rolling.semi_axes.into();
                 mu * rolling.force / (rolling.shear_modulus * a * b * creep_coefficient(b / a))
             }
         };
@@ -98,7 +100,7 @@ mod tests {
         let mut rolling = RollingContact {
             speed: -2.0,
             force: 1.0,
-            semi_axes: [1e-3, 1e-4],
+            semi_axes: SemiAxes::new(1e-3, 1e-4),
             shear_modulus: 8e10,
         };
         assert_eq!(Creep::Ratio(1e-3).slip(0.1, &rolling), 2e-3);

@@ -11,7 +11,7 @@
 //! sqrt(o) as Hertz's does. So shares are never negative and change steadily with the surface; on a smooth groove they
 //! are Hertz's. An edge within a part is good to the square of the part's width.
 
-use contact::StripLoads;
+use contact::{SemiAxes, StripLoads};
 
 use super::law::TractionLaw;
 
@@ -27,8 +27,8 @@ pub struct Slip {
 /// The contact over which traction is spread.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Ellipse {
-    /// Semi-axes along the groove (a) and along the rolling direction (b), m.
-    pub semi_axes: [f64; 2],
+    /// Semi-axes a along the groove and b in the rolling direction, m.
+    pub semi_axes: SemiAxes,
     /// Radius R_d of the deformed surface across the track, m; infinite is flat.
     pub radius: f64,
     /// Largest pressure, Pa.
@@ -128,7 +128,7 @@ impl PatchPoints {
         slip: &Slip,
         (force, small): (f64, f64),
     ) -> Resultant {
-        let [a, b] = ellipse.semi_axes;
+        let [a, b] = ellipse.semi_axes.into();
         let ([s_t, s_q], [w_t, w_q, w_n]) = (slip.centre, slip.turning);
         let mut found = Resultant::default();
         for place in &self.places {
@@ -207,7 +207,9 @@ mod tests {
             poisson_ratio: 0.3,
         };
         let geometry = BearingGeometry::reference_7010c();
-        HertzContact::new(&geometry, Side::Inner, steel, steel).semi_axes(332.0)
+        HertzContact::new(&geometry, Side::Inner, steel, steel)
+            .semi_axes(332.0)
+            .into()
     }
 
     /// Complete elliptic integral of the second kind by its arithmetic-geometric mean (DLMF 19.8.6): a second way than
@@ -317,7 +319,7 @@ mod tests {
                 );
                 let a = half_width();
                 let ellipse = Ellipse {
-                    semi_axes: [a, 1e-3 * a],
+                    semi_axes: SemiAxes::new(a, 1e-3 * a),
                     radius: FLAT,
                     ..Ellipse::default()
                 };
@@ -353,7 +355,7 @@ mod tests {
         ] {
             for (points, most) in rules.iter().copied() {
                 let ellipse = Ellipse {
-                    semi_axes,
+                    semi_axes: SemiAxes::from(semi_axes),
                     radius: FLAT,
                     ..Ellipse::default()
                 };
@@ -377,7 +379,7 @@ mod tests {
         let (mu, force, w) = (0.07, 332.0, 600.0);
         let [a, b] = inner_7010c();
         let ellipse = Ellipse {
-            semi_axes: [a, b],
+            semi_axes: SemiAxes::new(a, b),
             radius: 4.57e-3,
             ..Ellipse::default()
         };
@@ -411,7 +413,7 @@ mod tests {
     fn sliding_kills_the_moment_of_spin() {
         let (mu, force, a, w) = (0.07, 332.0, 1e-3, 100.0);
         let ellipse = Ellipse {
-            semi_axes: [a, 0.101 * a],
+            semi_axes: SemiAxes::new(a, 0.101 * a),
             radius: FLAT,
             ..Ellipse::default()
         };
@@ -430,7 +432,7 @@ mod tests {
     #[test]
     fn slopes_are_derivatives_and_power_is_a_loss() {
         let ellipse = Ellipse {
-            semi_axes: [1e-3, 1e-4],
+            semi_axes: SemiAxes::new(1e-3, 1e-4),
             radius: 4.6e-3,
             peak_pressure: 1e9,
             film: 0.4e-6,

@@ -44,7 +44,7 @@ fn largest_on_line(
     (unit_y, reach): (f64, f64),
     pressure: impl Fn(f64) -> f64,
 ) -> f64 {
-    let [a, b] = ellipse.semi_axes;
+    let [a, b] = ellipse.semi_axes.into();
     let ([s_t, s_q], [w_t, w_q, w_n]) = (slip.centre, slip.turning);
     let y = a * unit_y;
     let z = -y * y / (2.0 * ellipse.radius);
@@ -60,9 +60,10 @@ fn largest_on_line(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use contact::SemiAxes;
 
     const ELLIPSE: Ellipse = Ellipse {
-        semi_axes: [1.0155e-3, 1.03e-4],
+        semi_axes: SemiAxes::new(1.0155e-3, 1.03e-4),
         radius: f64::INFINITY,
         peak_pressure: 1.5e9,
         film: 0.0,
@@ -116,7 +117,7 @@ mod tests {
             radius: 4.57e-3,
             ..ELLIPSE
         };
-        let [a, b] = ellipse.semi_axes;
+        let [a, b] = ellipse.semi_axes.into();
         let mut expected = 0.0f64;
         for (i, j) in (-160..=160).flat_map(|i| (-800..=800).map(move |j| (i, j))) {
             let (x, y) = (f64::from(i) / 160.0, f64::from(j) / 800.0);
@@ -166,7 +167,7 @@ mod tests {
     #[test]
     fn an_open_contact_has_none() {
         let open = Ellipse {
-            semi_axes: [0.0; 2],
+            semi_axes: SemiAxes::default(),
             peak_pressure: 0.0,
             ..ELLIPSE
         };

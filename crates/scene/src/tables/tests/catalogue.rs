@@ -258,7 +258,7 @@ fn shoulders_of_the_rule_fit_every_contact_angle() {
         let text = with_raceways(&keys) + "\n" + &section("inner") + &section("outer");
         let scene = parse(&text, &[]).unwrap();
         let b = scene.bearing;
-        let shoulder = scene.inner.section.unwrap().shoulder_diameters[1];
+        let shoulder = scene.inner.section.unwrap().shoulder_diameters.at_high_z;
         let height = 0.5 * (shoulder - b.inner_raceway_diameter);
         let edge = (1.0 - height / b.inner_groove_radius).acos().to_degrees();
         assert!(edge >= f64::from(degrees) + 19.999, "{degrees}: {edge}");

@@ -69,7 +69,8 @@ fn the_example_of_the_documentation_reads_as_it_says() {
         (section.element, section.sectors, section.grading),
         (SectionElement::Hex20, 180, 1.2)
     );
-    assert_eq!(section.shoulder_diameters, [60.4e-3, 60.4e-3]);
+    let shoulders = section.shoulder_diameters;
+    assert_eq!((shoulders.at_low_z, shoulders.at_high_z), (60.4e-3, 60.4e-3));
 }
 
 /// If this failed, a short scene would not be read, or a default would differ from what the example states.
