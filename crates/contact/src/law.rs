@@ -13,9 +13,9 @@
 //! x Q_o, g_o = h_o(Q_o) + x Q_i. The forces are those of the law at g_i - x Q_o and g_o - x Q_i, found by Newton's
 //! iteration on the roots of both Hertz approaches. Where that leaves the range of the law or finds a contact open,
 //! they are found in turns, which contract by x^2 dQ_i/dg dQ_o/dg, 3e-4 under 330 N. They are the gradient of
-//! V_i + V_o + x Q_i Q_o, convex where that product is below 1: the Hessian of the complementary energy, ((dh_i, x),
-//! (x, dh_o)), is positive definite then. Far beyond any load a law is continued as a straight line, so that the
-//! product is at most 1/4.
+//! V_i + V_o + x Q_i Q_o, with the derivative -Q_i Q_o over x, convex where that product is below 1: the Hessian of the
+//! complementary energy, ((dh_i, x), (x, dh_o)), is positive definite then. Far beyond any load a law is continued as a
+//! straight line, so that the product is at most 1/4.
 
 use crate::geometry::BySide;
 
@@ -40,6 +40,9 @@ pub struct BallLaws {
     pub laws: [ContactLaw; 2],
     /// By how much a contact yields under the force of the other one x, m/N.
     pub across: f64,
+    /// Tangent of a contact from which its law is continued as a straight line, N/m: [`STIFFEST`] over the largest x
+    /// of the ball, so that the energy stays convex for any trial position and its derivative over x is -Q_i Q_o.
+    pub stiffest: f64,
 }
 
 /// Both contacts of a ball.
@@ -60,9 +63,8 @@ const MOST_ROOTS: usize = 12;
 /// Last of these steps over a root: its square is below round-off.
 const ROOT_STEP: f64 = 1e-9;
 
-/// Largest tangent of a contact times what it yields under the force of the other: beyond it the law is a straight
-/// line, so that the energy of both stays convex for any trial position.
-const SHARE: f64 = 0.5;
+/// Largest tangent of a contact times what it yields under the force of the other.
+pub const STIFFEST: f64 = 0.5;
 
 impl BallForces {
     /// Contacts that know nothing of each other.
@@ -72,6 +74,12 @@ impl BallForces {
             contacts,
             tangent: [[inner, 0.0], [0.0, outer]],
         }
+    }
+
+    /// Growth of the forces with x, N^2/m: a larger x is a smaller approach.
+    pub fn over_across(&self) -> BySide<f64> {
+        let [inner, outer] = self.contacts.map(|contact| contact.force);
+        self.tangent.map(|row| -(row[0] * outer + row[1] * inner))
     }
 }
 
@@ -85,9 +93,10 @@ impl BallLaws {
         if let Some(contacts) = self.pressed(g) {
             return self.coupled(contacts);
         }
-        let law = |k: usize, g: f64| self.laws[k].capped(g, SHARE / x);
+        let law = |k: usize, g: f64| self.laws[k].capped(g, self.stiffest);
         let mut contacts = [law(0, g[0]), law(1, g[1])];
-        if contacts.iter().any(|contact| contact.force == 0.0) {
+        // One that is pushed out may touch before it is near: where x is negative.
+        if x > 0.0 && contacts.iter().any(|contact| contact.force == 0.0) {
             return BallForces::apart(contacts);
         }
         for _ in 0..MOST_TURNS {
@@ -128,8 +137,10 @@ impl BallLaws {
             if (0..2).all(|k| steps[k].abs() <= ROOT_STEP * roots[k]) {
                 let at = |k: usize| self.laws[k].at_root(roots[k], 1.0 - 1.5 * kappa[k] * roots[k]);
                 let contacts = [at(0), at(1)];
-                let most = SHARE / self.across;
-                return contacts.iter().all(|at| at.tangent <= most).then_some(contacts);
+                return contacts
+                    .iter()
+                    .all(|at| at.tangent <= self.stiffest)
+                    .then_some(contacts);
             }
         }
         None
@@ -347,6 +358,7 @@ mod tests {
             },
         ],
         across: 1.8e-10,
+        stiffest: STIFFEST / 1.8e-10,
     };
 
     /// Wrong: a contact would not feel the force of the other one of its ball, or too much. Both equations of the ball.
@@ -378,7 +390,7 @@ mod tests {
                 pressed += 1;
                 for side in 0..2 {
                     let other = found[1 - side].force;
-                    let turn = BALL.laws[side].capped(g[side] - BALL.across * other, SHARE / BALL.across);
+                    let turn = BALL.laws[side].capped(g[side] - BALL.across * other, BALL.stiffest);
                     let (a, b) = (found[side].force, turn.force);
                     assert!(
                         (a - b).abs() < 1e-13 * b.max(other) && !turn.beyond_limit,

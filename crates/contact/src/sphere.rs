@@ -22,10 +22,11 @@
 //! The ellipse is that of a peak pressure of 1.5 GPa: twice the pressure changes the compliance by 0.05/(E D).
 //!
 //! A contact is stiffer than Hertz's by `own` Q, about 0.70 Q/(E D), and softer by `across` times the force of the
-//! other one, 0.33/(E D): together about 0.4 Q/(E D), 1.5 % of the approach of a 9 mm ball under 330 N. The contacts
-//! are taken as opposite; at 150 deg `across` is a quarter less. Valid for small ellipses, where the pressure stays
-//! Hertz's.
+//! other one, 0.33/(E D): together about 0.4 Q/(E D), 1.5 % of the approach of a 9 mm ball under 330 N. `across`
+//! follows the angle between the contacts ([`crate::across`]): at 150 deg it is a quarter less. Valid for small
+//! ellipses, where the pressure stays Hertz's.
 
+use crate::across::AcrossCompliance;
 use crate::geometry::BySide;
 use crate::hertz::{Elastic, HertzContact};
 
@@ -44,8 +45,8 @@ const GROWTH: f64 = 1.0 / 6.0;
 pub struct SphereCompliance {
     /// By how much less than a half-space a contact yields under its own force, inner first.
     pub own: BySide<f64>,
-    /// By how much a contact yields under the force of the opposite one.
-    pub across: f64,
+    /// By how much a contact yields under the force of the other one.
+    pub across: AcrossCompliance,
 }
 
 impl SphereCompliance {
@@ -54,7 +55,7 @@ impl SphereCompliance {
         let series = LegendreSeries::new(ball, 0.5 * diameter);
         SphereCompliance {
             own: contacts.map(|hertz| series.own(&hertz)),
-            across: series.at_angle(std::f64::consts::PI),
+            across: AcrossCompliance::new(|angle| series.at_angle(angle)),
         }
     }
 }
@@ -171,6 +172,23 @@ mod tests {
         assert!((volume / expected - 1.0).abs() < 1e-3, "{volume} {expected}");
     }
 
+    /// Wrong: the polynomial over the angle between the contacts is not the series, or not its bits at opposite ones.
+    /// The series ends with an alternating term of 1e-10 there and of nothing at other angles.
+    #[test]
+    fn across_is_the_series_at_any_angle() {
+        let geometry = crate::BearingGeometry::reference_7010c();
+        let contacts = crate::Side::BOTH.map(|side| HertzContact::new(&geometry, side, STEEL, STEEL));
+        let across = SphereCompliance::new(STEEL, geometry.ball_diameter, &contacts).across;
+        let series = LegendreSeries::new(STEEL, 0.5 * geometry.ball_diameter);
+        let pi = std::f64::consts::PI;
+        assert_eq!(across.opposite(), series.at_angle(pi));
+        for difference in [1e-3f64, 0.02, 0.1, 0.3, -0.6, 0.9, -1.04] {
+            let error = across.at(difference).value - series.at_angle(pi - difference);
+            assert!(error.abs() < 2e-10 * across.opposite(), "{difference}: {error}");
+        }
+        assert_eq!(across.stiffest(), crate::law::STIFFEST / across.opposite());
+    }
+
     /// Wrong: sign or size. 7010C: each contact is stiffer by about 0.4/(E D), 2e-7 mm/N, under equal forces.
     #[test]
     fn a_ball_of_the_7010c_is_stiffer_than_two_half_spaces() {
@@ -179,13 +197,10 @@ mod tests {
         let found = SphereCompliance::new(STEEL, geometry.ball_diameter, &contacts);
         let unit = 1.0 / (STEEL.young_modulus * geometry.ball_diameter);
         for own in found.own {
-            let together = (own - found.across) / unit;
+            let together = (own - found.across.opposite()) / unit;
             assert!((0.35..0.45).contains(&together), "{together}");
         }
-        assert!(
-            (found.across / unit - 0.3334).abs() < 1e-3,
-            "{}",
-            found.across / unit
-        );
+        let across = found.across.opposite() / unit;
+        assert!((across - 0.3334).abs() < 1e-3, "{across}");
     }
 }

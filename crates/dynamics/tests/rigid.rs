@@ -66,7 +66,7 @@ fn thrust_on_spheres_has_its_closed_form() {
             .iter()
             .map(|h| (q / h.stiffness).powf(2.0 / 3.0))
             .sum();
-        hertz + (2.0 * sphere.across - sphere.own[0] - sphere.own[1]) * q
+        hertz + (2.0 * sphere.across.opposite() - sphere.own[0] - sphere.own[1]) * q
     };
     let (mut low, mut high) = (free, 1.0);
     for _ in 0..100 {
