@@ -29,7 +29,7 @@ pub struct ContactLaw {
     pub stiffness: f64,
     /// Half-space compliance of the patch c_s, m/N; 0 for a rigid ring.
     pub patch_compliance: f64,
-    /// By how much less than a half-space the ball yields c_b, m/N; 0: it is one.
+    /// By how much less than a half-space the ball yields c_b, m/N; 0: it is one; negative: it is hollow and softer.
     pub ball_compliance: f64,
 }
 
@@ -267,10 +267,15 @@ fn solve_root(g: f64, kappa: f64) -> f64 {
     if kappa == 0.0 {
         return x;
     }
-    // Newton from below on an increasing function; 60 rounds cover the slowest start near the limit slope.
+    let most = match kappa > 0.0 {
+        true => (1.0 - 0.5 * MIN_SLOPE) / (1.5 * kappa),
+        false => f64::INFINITY,
+    };
+    // Newton from below on an increasing function, or from above where the ball is softer than a half-space; 60 rounds
+    // cover the slowest start near the limit slope.
     for _ in 0..60 {
         let step = (g - x * x * (1.0 - kappa * x)) / (x * (2.0 - 3.0 * kappa * x));
-        let next = (x + step).clamp(0.5 * x, (1.0 - 0.5 * MIN_SLOPE) / (1.5 * kappa));
+        let next = (x + step).clamp(0.5 * x, most);
         if (next - x).abs() <= 2.0 * f64::EPSILON * x {
             return next;
         }
@@ -318,6 +323,22 @@ mod tests {
                     "{g}: {residual}"
                 );
             }
+        }
+    }
+
+    /// Wrong: a hollow ball, softer than a half-space, would end the search for its force.
+    #[test]
+    fn a_ball_softer_than_a_half_space_meets_its_equation() {
+        let law = ContactLaw {
+            patch_compliance: 0.0,
+            ball_compliance: -4e-9,
+            ..LAW
+        };
+        for g in [1e-12, 1e-8, 5e-6, 1e-3] {
+            let at = law.evaluate(g);
+            let residual = at.approach + 4e-9 * at.force - g;
+            assert!(residual.abs() < 1e-14 * g && !at.beyond_limit, "{g}: {residual}");
+            assert!((law.evaluate(g * (1.0 + 1e-6)).energy - at.energy) / (g * 1e-6) / at.force - 1.0 < 1e-5);
         }
     }
 

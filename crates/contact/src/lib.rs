@@ -24,6 +24,7 @@ pub mod patch_shape;
 mod pressure;
 pub mod quadrature;
 pub mod raceway;
+mod shell;
 pub mod sphere;
 pub mod strips;
 pub mod surface;
