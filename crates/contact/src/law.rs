@@ -13,9 +13,9 @@
 //! x Q_o, g_o = h_o(Q_o) + x Q_i. The forces are those of the law at g_i - x Q_o and g_o - x Q_i, found by Newton's
 //! iteration on the roots of both Hertz approaches. Where that leaves the range of the law or finds a contact open,
 //! they are found in turns, which contract by x^2 dQ_i/dg dQ_o/dg, 3e-4 under 330 N. They are the gradient of
-//! V_i + V_o + x Q_i Q_o, convex where that product is below 1: the Hessian of the complementary energy, ((dh_i, x),
-//! (x, dh_o)), is positive definite then. Far beyond any load a law is continued as a straight line, so that the
-//! product is at most 1/4.
+//! V_i + V_o + x Q_i Q_o, with the derivative -Q_i Q_o over x, convex where that product is below 1: the Hessian of the
+//! complementary energy, ((dh_i, x), (x, dh_o)), is positive definite then. Far beyond any load a law is continued as a
+//! straight line, so that the product is at most 1/4.
 
 use crate::geometry::BySide;
 
@@ -29,7 +29,7 @@ pub struct ContactLaw {
     pub stiffness: f64,
     /// Half-space compliance of the patch c_s, m/N; 0 for a rigid ring.
     pub patch_compliance: f64,
-    /// By how much less than a half-space the ball yields c_b, m/N; 0: it is one.
+    /// By how much less than a half-space the ball yields c_b, m/N; 0: it is one; negative: it is hollow and softer.
     pub ball_compliance: f64,
 }
 
@@ -40,6 +40,9 @@ pub struct BallLaws {
     pub laws: [ContactLaw; 2],
     /// By how much a contact yields under the force of the other one x, m/N.
     pub across: f64,
+    /// Tangent of a contact from which its law is continued as a straight line, N/m: [`STIFFEST`] over the largest x
+    /// of the ball, so that the energy stays convex for any trial position and its derivative over x is -Q_i Q_o.
+    pub stiffest: f64,
 }
 
 /// Both contacts of a ball.
@@ -60,9 +63,8 @@ const MOST_ROOTS: usize = 12;
 /// Last of these steps over a root: its square is below round-off.
 const ROOT_STEP: f64 = 1e-9;
 
-/// Largest tangent of a contact times what it yields under the force of the other: beyond it the law is a straight
-/// line, so that the energy of both stays convex for any trial position.
-const SHARE: f64 = 0.5;
+/// Largest tangent of a contact times what it yields under the force of the other.
+pub const STIFFEST: f64 = 0.5;
 
 impl BallForces {
     /// Contacts that know nothing of each other.
@@ -72,6 +74,12 @@ impl BallForces {
             contacts,
             tangent: [[inner, 0.0], [0.0, outer]],
         }
+    }
+
+    /// Growth of the forces with x, N^2/m: a larger x is a smaller approach.
+    pub fn over_across(&self) -> BySide<f64> {
+        let [inner, outer] = self.contacts.map(|contact| contact.force);
+        self.tangent.map(|row| -(row[0] * outer + row[1] * inner))
     }
 }
 
@@ -85,9 +93,10 @@ impl BallLaws {
         if let Some(contacts) = self.pressed(g) {
             return self.coupled(contacts);
         }
-        let law = |k: usize, g: f64| self.laws[k].capped(g, SHARE / x);
+        let law = |k: usize, g: f64| self.laws[k].capped(g, self.stiffest);
         let mut contacts = [law(0, g[0]), law(1, g[1])];
-        if contacts.iter().any(|contact| contact.force == 0.0) {
+        // One that is pushed out may touch before it is near: where x is negative.
+        if x > 0.0 && contacts.iter().any(|contact| contact.force == 0.0) {
             return BallForces::apart(contacts);
         }
         for _ in 0..MOST_TURNS {
@@ -128,8 +137,10 @@ impl BallLaws {
             if (0..2).all(|k| steps[k].abs() <= ROOT_STEP * roots[k]) {
                 let at = |k: usize| self.laws[k].at_root(roots[k], 1.0 - 1.5 * kappa[k] * roots[k]);
                 let contacts = [at(0), at(1)];
-                let most = SHARE / self.across;
-                return contacts.iter().all(|at| at.tangent <= most).then_some(contacts);
+                return contacts
+                    .iter()
+                    .all(|at| at.tangent <= self.stiffest)
+                    .then_some(contacts);
             }
         }
         None
@@ -256,10 +267,15 @@ fn solve_root(g: f64, kappa: f64) -> f64 {
     if kappa == 0.0 {
         return x;
     }
-    // Newton from below on an increasing function; 60 rounds cover the slowest start near the limit slope.
+    let most = match kappa > 0.0 {
+        true => (1.0 - 0.5 * MIN_SLOPE) / (1.5 * kappa),
+        false => f64::INFINITY,
+    };
+    // Newton from below on an increasing function, or from above where the ball is softer than a half-space; 60 rounds
+    // cover the slowest start near the limit slope.
     for _ in 0..60 {
         let step = (g - x * x * (1.0 - kappa * x)) / (x * (2.0 - 3.0 * kappa * x));
-        let next = (x + step).clamp(0.5 * x, (1.0 - 0.5 * MIN_SLOPE) / (1.5 * kappa));
+        let next = (x + step).clamp(0.5 * x, most);
         if (next - x).abs() <= 2.0 * f64::EPSILON * x {
             return next;
         }
@@ -310,6 +326,22 @@ mod tests {
         }
     }
 
+    /// Wrong: a hollow ball, softer than a half-space, would end the search for its force.
+    #[test]
+    fn a_ball_softer_than_a_half_space_meets_its_equation() {
+        let law = ContactLaw {
+            patch_compliance: 0.0,
+            ball_compliance: -4e-9,
+            ..LAW
+        };
+        for g in [1e-12, 1e-8, 5e-6, 1e-3] {
+            let at = law.evaluate(g);
+            let residual = at.approach + 4e-9 * at.force - g;
+            assert!(residual.abs() < 1e-14 * g && !at.beyond_limit, "{g}: {residual}");
+            assert!((law.evaluate(g * (1.0 + 1e-6)).energy - at.energy) / (g * 1e-6) / at.force - 1.0 < 1e-5);
+        }
+    }
+
     /// Wrong: force and tangent would not be derivatives of energy and force, so Newton and the ledger would fail.
     #[test]
     fn force_and_tangent_are_derivatives_also_beyond_the_limit() {
@@ -347,6 +379,7 @@ mod tests {
             },
         ],
         across: 1.8e-10,
+        stiffest: STIFFEST / 1.8e-10,
     };
 
     /// Wrong: a contact would not feel the force of the other one of its ball, or too much. Both equations of the ball.
@@ -378,7 +411,7 @@ mod tests {
                 pressed += 1;
                 for side in 0..2 {
                     let other = found[1 - side].force;
-                    let turn = BALL.laws[side].capped(g[side] - BALL.across * other, SHARE / BALL.across);
+                    let turn = BALL.laws[side].capped(g[side] - BALL.across * other, BALL.stiffest);
                     let (a, b) = (found[side].force, turn.force);
                     assert!(
                         (a - b).abs() < 1e-13 * b.max(other) && !turn.beyond_limit,

@@ -4,6 +4,7 @@
 //! Frame: the bearing axis is z, the azimuth is measured from +x towards +y. A vector in the meridian plane
 //! of a ball is `[radial, axial]`.
 
+pub mod across;
 mod bins;
 pub mod elliptic;
 pub mod error;
@@ -24,6 +25,7 @@ mod pressure;
 pub mod quadrature;
 pub mod raceway;
 mod semi_axes;
+mod shell;
 pub mod sphere;
 pub mod strips;
 pub mod surface;
@@ -33,6 +35,7 @@ mod vector;
 pub mod weights;
 pub mod worn_line;
 
+pub use across::AcrossCompliance;
 pub use error::ContactError;
 pub use extent::{LoadPart, StripExtent, StripLoads};
 pub use facets::FacetSurface;

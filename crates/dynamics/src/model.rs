@@ -64,11 +64,11 @@ pub struct BallInertia {
 }
 
 impl BallInertia {
-    /// That of a solid sphere.
-    pub fn of_sphere(mass: f64, diameter: f64) -> BallInertia {
+    /// That of a sphere whose moment is so many times that of a solid one of its mass.
+    pub fn of_sphere(mass: f64, diameter: f64, factor: f64) -> BallInertia {
         BallInertia {
             mass,
-            moment: 0.1 * mass * diameter.powi(2),
+            moment: 0.1 * mass * diameter.powi(2) * factor,
         }
     }
 }
@@ -136,6 +136,8 @@ pub struct Model {
     pub mounting: Mounting,
     /// Ball steel.
     pub ball_material: Material,
+    /// Diameter of the cavity of hollow balls, m; 0: they are solid.
+    pub ball_inner_diameter: f64,
     /// Steel of the rings: contacts of rigid rings have it too.
     pub ring_material: Material,
     /// Shaft dofs x, y, z, tilt about x, tilt about y.
@@ -416,12 +418,24 @@ impl Model {
 
     /// Inertia of a ball.
     pub fn ball_inertia(&self) -> BallInertia {
-        BallInertia::of_sphere(self.ball_mass(), self.geometry.ball_diameter)
+        BallInertia::of_sphere(
+            self.ball_mass(),
+            self.geometry.ball_diameter,
+            self.moment_factor(),
+        )
+    }
+
+    /// Moment of inertia of a ball over that of a solid one of its mass, (1 - q^5)/(1 - q^3) of a hollow one whose
+    /// diameters have the ratio q.
+    pub fn moment_factor(&self) -> f64 {
+        let ratio = self.ball_inner_diameter / self.geometry.ball_diameter;
+        (1.0 - ratio.powi(5)) / (1.0 - ratio.powi(3))
     }
 
     /// Mass of one ball, kg.
     pub fn ball_mass(&self) -> f64 {
-        std::f64::consts::PI / 6.0 * self.geometry.ball_diameter.powi(3) * self.ball_material.density
+        let cubes = self.geometry.ball_diameter.powi(3) - self.ball_inner_diameter.powi(3);
+        std::f64::consts::PI / 6.0 * cubes * self.ball_material.density
     }
 
     /// Loads of all effects of the model at an instant.

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use contact::hertz::Elastic;
-use contact::{BearingGeometry, Groove, HertzContact, LeastSize, Side, SphereCompliance};
+use contact::{BearingGeometry, Groove, HertzContact, LeastSize, Side, SphereCompliance, sphere};
 use dynamics::RACEWAY_GROUP;
 use dynamics::effects::Setting;
 use dynamics::kinematics::Rolling;
@@ -42,6 +42,12 @@ pub fn build_model(scene: &Scene) -> Result<(Model, NodeTags), BuildError> {
     let geometry = geometry(scene);
     geometry.validate()?;
     require_resolvable(scene, &geometry)?;
+    // Before the meshes are read: whether a hollow ball has contacts.
+    let materials = [
+        material(&scene.materials.balls)?,
+        material(&scene.materials.rings)?,
+    ];
+    ball_elasticity(scene, &geometry, materials.each_ref().map(elastic))?;
     let [inner, outer] = Side::BOTH;
     let rings = rayon::join(|| ring(scene, &geometry, inner), || ring(scene, &geometry, outer));
     let (inner, inner_tags) = rings.0?.unzip();
@@ -68,7 +74,7 @@ pub fn model_with_rings(scene: &Scene, rings: [Option<Arc<RingModel>>; 2]) -> Re
         material(&scene.materials.rings)?,
         material(&scene.materials.balls)?,
     );
-    let (hertz, sphere) = ball_elasticity(scene, &geometry, [&ball_steel, &ring_steel].map(elastic));
+    let (hertz, sphere) = ball_elasticity(scene, &geometry, [&ball_steel, &ring_steel].map(elastic))?;
     let effects = scene.effects.loads(Setting {
         speeds: &speeds(scene),
         slip: scene.effects.slip(),
@@ -96,6 +102,7 @@ pub fn model_with_rings(scene: &Scene, rings: [Option<Arc<RingModel>>; 2]) -> Re
         weighs_carried: true,
         mounting,
         ball_material: ball_steel,
+        ball_inner_diameter: scene.bearing.ball_inner_diameter,
         ring_material: ring_steel,
         shaft: dofs,
         shaft_schedules: shaft.schedules.clone(),
@@ -124,17 +131,28 @@ fn ball_elasticity(
     scene: &Scene,
     geometry: &BearingGeometry,
     [ball, ring]: [Elastic; 2],
-) -> ([HertzContact; 2], SphereCompliance) {
+) -> Result<([HertzContact; 2], SphereCompliance), BuildError> {
     let given = [scene.contact.inner_stiffness, scene.contact.outer_stiffness];
     let hertz = Side::BOTH.map(|side| {
         let exact = HertzContact::new(geometry, side, ball, ring);
         given[side.index()].map_or(exact, |k| exact.with_stiffness(k))
     });
+    let (diameter, cavity) = (geometry.ball_diameter, scene.bearing.ball_inner_diameter);
+    let (wall, least) = (0.5 * (diameter - cavity), sphere::least_wall(&hertz));
+    if cavity > 0.0 && wall < least {
+        return Err(BuildError::ThinWall {
+            path: scene.path.clone(),
+            cavity_mm: 1e3 * cavity,
+            wall_mm: 1e3 * wall,
+            least_mm: 1e3 * least,
+            most_mm: 1e3 * (diameter - 2.0 * least),
+        });
+    }
     let sphere = match scene.contact.ball {
-        tables::BallElasticity::Sphere => SphereCompliance::new(ball, geometry.ball_diameter, &hertz),
+        tables::BallElasticity::Sphere => SphereCompliance::of_shell(ball, diameter, cavity, &hertz),
         tables::BallElasticity::HalfSpace => SphereCompliance::default(),
     };
-    (hertz, sphere)
+    Ok((hertz, sphere))
 }
 
 /// How contacts press on rings.

@@ -68,6 +68,24 @@ pub enum BuildError {
     /// The shaft of a list of bearings cannot be.
     #[error(transparent)]
     Assembly(#[from] AssemblyError),
+    /// The wall of a hollow ball is too thin for Hertz's contacts.
+    #[error(
+        "scene {}: bearing.ball_inner_diameter is {cavity_mm:.4} mm, which leaves a wall of {wall_mm:.3} mm; expected \
+         at most {most_mm:.3} mm, a wall of {least_mm:.3} mm: the contacts are Hertz's where the wall is twice the \
+         larger semi-axis of their ellipse at 1.5 GPa", path.display()
+    )]
+    ThinWall {
+        /// The scene file.
+        path: PathBuf,
+        /// Diameter of the cavity, mm.
+        cavity_mm: f64,
+        /// Wall, mm.
+        wall_mm: f64,
+        /// Least wall, mm.
+        least_mm: f64,
+        /// Largest cavity, mm.
+        most_mm: f64,
+    },
     /// Profiles do not fit the rings.
     #[error("scene {}: {problem}", path.display())]
     Surface {

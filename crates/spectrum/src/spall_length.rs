@@ -230,7 +230,8 @@ fn known(
         mass,
         is_free,
         ball: (
-            scene.materials.balls.density * PI / 6.0 * diameter.powi(3),
+            scene.materials.balls.density * PI / 6.0
+                * (diameter.powi(3) - bearing.ball_inner_diameter.powi(3)),
             diameter,
             geometry.pitch_diameter(),
         ),

@@ -64,62 +64,98 @@ fn mean_normal(law: &ContactLaw, d0: f64, d1: f64) -> [f64; 2] {
     [mean, (end.force - mean) / change]
 }
 
+/// Mean forces along the normals, their growth with the approaches at the end, N/m, by rows of forces, and with the x
+/// of the end, of which the mean has half.
+#[derive(Clone, Copy, Debug, Default)]
+struct MeanNormals {
+    forces: [f64; 2],
+    slopes: [[f64; 2]; 2],
+    over_across: [f64; 2],
+}
+
 /// Elastic mean forces of both contacts between the approaches `d0` and `d1` along their normals, and their derivatives
 /// with respect to d1, by rows of forces. Their work is exactly the change of the stored energy: where both change
 /// little the gradient is integrated, else the energy is differenced for one contact after the other, as the mean of
 /// both orders (Itoh and Abe, J. Comput. Phys. 76 (1988) 85).
-fn mean_normals(laws: &BallLaws, d0: [f64; 2], d1: [f64; 2]) -> ([f64; 2], [[f64; 2]; 2]) {
+fn mean_normals(laws: &BallLaws, d0: [f64; 2], d1: [f64; 2]) -> MeanNormals {
     let is_open = |k: usize| d0[k] <= 0.0 && d1[k] <= 0.0;
-    if laws.across == 0.0 || is_open(0) || is_open(1) {
+    if laws.across == 0.0 || (laws.across > 0.0 && (is_open(0) || is_open(1))) {
         let [inner, outer] = [0, 1].map(|k| mean_normal(&laws.laws[k], d0[k], d1[k]));
-        return ([inner[0], outer[0]], [[inner[1], 0.0], [0.0, outer[1]]]);
+        return MeanNormals {
+            forces: [inner[0], outer[0]],
+            slopes: [[inner[1], 0.0], [0.0, outer[1]]],
+            over_across: [0.0; 2],
+        };
     }
-    let is_small = |k: usize| (d1[k] - d0[k]).abs() <= SMALL_CHANGE * d0[k].min(d1[k]);
-    let (mut forces, mut slopes) = ([0.0; 2], [[0.0; 2]; 2]);
+    // By how much a contact is deeper than its approach because the other one pushes it out.
+    let pushed = match laws.across < 0.0 {
+        true => [1, 0].map(|k| -laws.across * laws.evaluate(d0).contacts[k].force),
+        false => [0.0; 2],
+    };
+    let is_small = |k: usize| (d1[k] - d0[k]).abs() <= SMALL_CHANGE * (d0[k].min(d1[k]) + pushed[k]);
+    let MeanNormals {
+        mut forces,
+        mut slopes,
+        mut over_across,
+    } = MeanNormals::default();
     if is_small(0) && is_small(1) {
         for (s, weight) in GAUSS {
             let at = laws.evaluate([0, 1].map(|k| d0[k] + s * (d1[k] - d0[k])));
+            let over_x = at.over_across();
             for i in 0..2 {
+                over_across[i] += 0.5 * weight * over_x[i];
                 forces[i] += weight * at.contacts[i].force;
                 (0..2).for_each(|k| slopes[i][k] += weight * s * at.tangent[i][k]);
             }
         }
-        return (forces, slopes);
+        return MeanNormals {
+            forces,
+            slopes,
+            over_across,
+        };
     }
     for i in 0..2 {
         for (other, is_end) in [(d0[1 - i], false), (d1[1 - i], true)] {
-            let [force, own, across] = divided(laws, i, [d0[i], d1[i]], other);
+            let [force, own, across, over_x] = divided(laws, (i, pushed[i]), [d0[i], d1[i]], other);
             forces[i] += 0.5 * force;
             slopes[i][i] += 0.5 * own;
             slopes[i][1 - i] += if is_end { 0.5 * across } else { 0.0 };
+            over_across[i] += 0.25 * over_x;
         }
     }
-    (forces, slopes)
+    MeanNormals {
+        forces,
+        slopes,
+        over_across,
+    }
 }
 
-/// Mean force of the contact `i` between two approaches, while the other one stays at `other`, and its derivatives with
-/// respect to the end and to `other`.
-fn divided(laws: &BallLaws, i: usize, [from, to]: [f64; 2], other: f64) -> [f64; 3] {
+/// Mean force of the contact `i`, pushed out by so much, between two approaches, while the other one stays at `other`,
+/// and its derivatives with respect to the end, to `other` and to x.
+fn divided(laws: &BallLaws, (i, pushed): (usize, f64), [from, to]: [f64; 2], other: f64) -> [f64; 4] {
     let at = |d: f64| {
         let mut g = [other; 2];
         g[i] = d;
         laws.evaluate(g)
     };
     let change = to - from;
-    if change.abs() <= SMALL_CHANGE * from.min(to) || change == 0.0 {
-        return GAUSS.iter().fold([0.0; 3], |sum, (s, weight)| {
+    if change.abs() <= SMALL_CHANGE * (from.min(to) + pushed) || change == 0.0 {
+        return GAUSS.iter().fold([0.0; 4], |sum, (s, weight)| {
             let at = at(from + s * change);
-            let terms = [at.contacts[i].force, s * at.tangent[i][i], at.tangent[i][1 - i]];
-            [0, 1, 2].map(|k| sum[k] + weight * terms[k])
+            let [own, across] = [i, 1 - i].map(|k| at.tangent[i][k]);
+            let terms = [at.contacts[i].force, s * own, across, at.over_across()[i]];
+            [0, 1, 2, 3].map(|k| sum[k] + weight * terms[k])
         });
     }
     let (start, end) = (at(from), at(to));
     let energy = |at: &BallForces| at.contacts[0].energy + at.contacts[1].energy;
     let force = (energy(&end) - energy(&start)) / change;
+    let product = |at: &BallForces| at.contacts[0].force * at.contacts[1].force;
     [
         force,
         (end.contacts[i].force - force) / change,
         (end.contacts[1 - i].force - start.contacts[1 - i].force) / change,
+        (product(&start) - product(&end)) / change,
     ]
 }
 
@@ -130,6 +166,8 @@ pub struct BallMeans {
     pub contacts: [MeanForce; 2],
     /// Derivative of the force of each with respect to l1 of the other, N/m.
     pub across: [ContactTangent; 2],
+    /// Derivative of the normal force of each with respect to the x of the end, N^2/m.
+    pub over_across: [f64; 2],
 }
 
 /// Lengths of a ball's contacts over a step.
@@ -142,48 +180,57 @@ pub struct BallLengths {
 }
 
 impl BallLengths {
+    /// l of both contacts at the start, 0, or the end, 1, m.
+    pub(super) fn at(&self, end: usize) -> [[f64; 2]; 2] {
+        [0, 1].map(|k| self.l[k][end])
+    }
+
     /// Approaches at the start and at the end, m.
-    fn approaches(&self) -> [[f64; 2]; 2] {
+    pub(super) fn approaches(&self) -> [[f64; 2]; 2] {
         [0, 1].map(|end| [0, 1].map(|k| size(self.l[k][end]) - self.touching[k]))
     }
 }
 
-/// Mean forces over a step. `weight` is that of the start, the integrator's alpha_f; `viscous` what
-/// [`viscous`](super::contact_damping::viscous) gives for each contact, if there is damping.
+/// Mean forces over a step, of the laws at the mean of both x and at the x of either end. `weight` is that of the
+/// start, the integrator's alpha_f; `viscous` what [`viscous`](super::contact_damping::viscous) gives for each contact,
+/// if there is damping.
 pub fn mean_forces(
-    laws: &BallLaws,
+    (laws, ends): (&BallLaws, &[BallLaws; 2]),
     lengths: &BallLengths,
     (scheme, weight): (ContactScheme, f64),
     viscous: Option<[[f64; 2]; 2]>,
 ) -> BallMeans {
     let [d0, d1] = lengths.approaches();
-    let (normals, stiffnesses) = match scheme {
+    let means = match scheme {
         ContactScheme::DiscreteGradient => mean_normals(laws, d0, d1),
         ContactScheme::Pointwise => {
-            let (start, end) = (laws.evaluate(d0), laws.evaluate(d1));
+            let (start, end) = (ends[0].evaluate(d0), ends[1].evaluate(d1));
             let force = |k: usize| weight * start.contacts[k].force + (1.0 - weight) * end.contacts[k].force;
-            (
-                [force(0), force(1)],
-                end.tangent.map(|row| row.map(|t| (1.0 - weight) * t)),
-            )
+            MeanNormals {
+                forces: [force(0), force(1)],
+                slopes: end.tangent.map(|row| row.map(|t| (1.0 - weight) * t)),
+                over_across: end.over_across().map(|growth| (1.0 - weight) * growth),
+            }
         }
     };
     let mut result = BallMeans {
         contacts: [MeanForce::default(); 2],
         across: [[[0.0; 2]; 2]; 2],
+        over_across: [0.0; 2],
     };
     for k in 0..2 {
-        let own = [normals[k], stiffnesses[k][k]];
+        let own = [means.forces[k], means.slopes[k][k]];
         let damping = viscous.map(|terms| terms[k]);
         let (mean, pulls) = along_lengths(lengths.l[k], own, damping, d1[k] - d0[k]);
         result.contacts[k] = mean;
         if !pulls {
             let direction = mean_direction(lengths.l[k]);
-            result.across[k] = outer(stiffnesses[k][1 - k], direction, unit(lengths.l[1 - k][1]));
+            result.across[k] = outer(means.slopes[k][1 - k], direction, unit(lengths.l[1 - k][1]));
+            result.over_across[k] = means.over_across[k];
         }
     }
     if scheme == ContactScheme::DiscreteGradient && weight != 0.5 {
-        add_changes(laws, lengths, 0.5 - weight, &mut result);
+        add_changes(ends, lengths, 0.5 - weight, &mut result);
     }
     result
 }
@@ -274,7 +321,7 @@ pub(super) fn mean_direction([l0, l1]: [[f64; 2]; 2]) -> [f64; 2] {
 }
 
 /// factor a b^T.
-fn outer(factor: f64, a: [f64; 2], b: [f64; 2]) -> [[f64; 2]; 2] {
+pub(super) fn outer(factor: f64, a: [f64; 2], b: [f64; 2]) -> [[f64; 2]; 2] {
     a.map(|a| b.map(|b| factor * a * b))
 }
 
@@ -303,8 +350,9 @@ pub(super) fn drop_pull(along: [f64; 2], result: &mut MeanForce) {
 }
 
 /// Adds `share` times the change of the forces over the step; no sum pulls.
-fn add_changes(laws: &BallLaws, lengths: &BallLengths, share: f64, result: &mut BallMeans) {
-    let [start, end] = lengths.approaches().map(|d| laws.evaluate(d));
+fn add_changes(laws: &[BallLaws; 2], lengths: &BallLengths, share: f64, result: &mut BallMeans) {
+    let [d0, d1] = lengths.approaches();
+    let [start, end] = [laws[0].evaluate(d0), laws[1].evaluate(d1)];
     for k in 0..2 {
         let l = lengths.l[k];
         let [e0, e1] = l.map(unit);

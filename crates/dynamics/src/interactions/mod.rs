@@ -1,5 +1,6 @@
 //! Interactions of a bearing's bodies.
 
+pub mod between_contacts;
 pub mod cage;
 pub mod contact_damping;
 mod contact_ends;

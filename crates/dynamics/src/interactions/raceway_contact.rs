@@ -4,17 +4,18 @@
 //! |l| + D_w/2 - R. |l| is convex in l and the contact energy V(g) convex and increasing, so the energy of a contact is
 //! convex in small displacements; finite ones bend l ([`crate::system::Circle`]). At rest its force is Q n, with n =
 //! l/|l| and Q = dV/dg; over a step it is a mean (see [`super::discrete_gradient`]). Both contacts of a ball have one
-//! energy, because the ball yields as a sphere ([`BallLaws`]). On faceted raceways, at rest only, g has a part of its
-//! own from the facets, and the forces have no energy.
+//! energy, because the ball yields as a sphere ([`super::between_contacts`]). On faceted raceways, at rest only, g has
+//! a part of its own from the facets, and the forces have no energy.
 
 use std::sync::Arc;
 
 use contact::law::ContactForce;
-use contact::{BallLaws, BySide, ContactLaw, Meridian, NodalWeights, Side, Unevenness};
+use contact::{AcrossCompliance, BySide, ContactLaw, Meridian, NodalWeights, Side, Unevenness};
 use timer::SharedLaps;
 
+use super::between_contacts::{BallContacts, of_other};
 use super::contact_damping::{ContactDamping, viscous};
-use super::discrete_gradient::{BallLengths, BallMeans, ContactScheme, ContactTangent, mean_forces};
+use super::discrete_gradient::{BallLengths, BallMeans, ContactScheme, ContactTangent};
 use super::strip_contact::{Lateral, StripSite};
 use crate::model::Model;
 use crate::mounting::Mounting;
@@ -42,8 +43,8 @@ pub struct Site {
     pub lever: f64,
     /// Force law.
     pub law: ContactLaw,
-    /// By how much it yields under the force of the ball's other contact, m/N.
-    pub across: f64,
+    /// By how much it yields under the force of the ball's other contact.
+    pub across: AcrossCompliance,
     /// How far the facets lie inside the torus; None on an exact torus.
     pub unevenness: Option<Arc<Unevenness>>,
     /// Its strips, where the scene asks for them; the law then brings only its compliances.
@@ -72,7 +73,7 @@ pub struct SiteState {
     pub slope: Meridian,
     /// Force, its tangent over the contact's own approach, and energy.
     pub force: ContactForce,
-    /// The force across the normal, of strips only.
+    /// The force across the normal: of strips, and of a ball that yields between its contacts.
     pub lateral: Option<Lateral>,
     /// Contact angle, rad.
     pub angle: f64,
@@ -191,28 +192,37 @@ impl Site {
 /// Both contacts of a ball.
 type BallSites = [Site; 2];
 
-fn laws([inner, outer]: &BallSites) -> BallLaws {
-    BallLaws {
+fn contacts([inner, outer]: &BallSites) -> BallContacts {
+    BallContacts {
         laws: [inner.law, outer.law],
         across: inner.across,
     }
 }
 
-/// Both contacts of a ball at l, and the growth of their forces with both approaches, N/m.
-fn ball_states(sites: &BallSites, l: BySide<Meridian>) -> (BySide<SiteState>, BySide<BySide<f64>>) {
+/// Both contacts of a ball at l, and the growth of the force of each with l of the other, N/m.
+fn ball_states(sites: &BallSites, l: BySide<Meridian>) -> (BySide<SiteState>, BySide<ContactTangent>) {
     let placed = [0, 1].map(|k| sites[k].place(l[k]));
-    let found = laws(sites).evaluate(placed.map(|(_, approach)| approach));
+    let approaches = placed.map(|(_, approach)| approach);
+    let (found, lateral) = contacts(sites).instant(approaches, l);
     let state = |k: usize| {
         let (mut state, approach) = placed[k];
         state.force = found.contacts[k];
         state.force.tangent = found.tangent[k][k];
+        state.lateral = lateral.map(|lateral| lateral[k]);
         if let Some(strips) = sites[k].strip_site() {
             let (force, lateral) = strips.state(approach, state.angle);
             (state.force, state.lateral) = (force, Some(lateral));
         }
         state
     };
-    ([state(0), state(1)], found.tangent)
+    let states = [state(0), state(1)];
+    let place = (
+        states.map(|state| state.normal.to_array()),
+        states.map(|state| state.gap_slope().to_array()),
+        states.map(|state| state.length),
+    );
+    let other = |k: usize| of_other(k, found.tangent[k][1 - k], lateral.as_ref(), place);
+    (states, [other(0), other(1)])
 }
 
 impl SiteState {
@@ -345,7 +355,10 @@ impl RacewayContacts {
         self.ball_states(lengths).flat_map(|(states, _)| states).collect()
     }
 
-    fn ball_states(&self, lengths: &[f64]) -> impl Iterator<Item = (BySide<SiteState>, BySide<BySide<f64>>)> {
+    fn ball_states(
+        &self,
+        lengths: &[f64],
+    ) -> impl Iterator<Item = (BySide<SiteState>, BySide<ContactTangent>)> {
         let l = lengths.as_chunks::<2>().0.as_chunks::<2>().0;
         let vectors = |l: &[_; 2]| l.map(Meridian::from);
         self.balls()
@@ -372,7 +385,7 @@ impl RacewayContacts {
         let balls = self.balls().zip(&places).enumerate();
         balls
             .map(|(ball, (sites, at))| {
-                let mut found = mean_forces(&laws(sites), at, scheme, viscous(ball));
+                let mut found = contacts(sites).mean_forces(at, scheme, viscous(ball));
                 for (k, site) in sites.iter().enumerate() {
                     if let Some(strips) = site.strip_site() {
                         let damping = means.damping.as_ref().map(|damping| (damping, means.dt));
@@ -451,15 +464,10 @@ impl Interaction for RacewayContacts {
                 }
             }
             None => {
-                for (states, growth) in self.ball_states(lengths.end) {
+                for (states, across) in self.ball_states(lengths.end) {
                     forces.extend(states.iter().flat_map(|state| state.on_ring().to_array()));
-                    let gaps = states.map(|state| state.gap_slope().to_array());
-                    let across = |k: usize| {
-                        let row = states[k].normal.map(|n| growth[k][1 - k] * n);
-                        row.to_array().map(|r| gaps[1 - k].map(|gap| r * gap))
-                    };
                     let own = states.map(|state| state.tangent());
-                    tangents.extend(tangent_of_ball(own, [across(0), across(1)]));
+                    tangents.extend(tangent_of_ball(own, across));
                 }
             }
         }

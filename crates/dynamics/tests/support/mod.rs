@@ -83,6 +83,7 @@ impl Case {
             weighs_carried: true,
             mounting: Default::default(),
             ball_material: steel,
+            ball_inner_diameter: 0.0,
             ring_material: steel,
             shaft: [
                 dof(true),

@@ -46,6 +46,7 @@ pub struct RawBearing {
     outside_diameter: Quantity<LENGTH>,
     width: Quantity<LENGTH>,
     first_ball_azimuth: Option<Quantity<ANGLE>>,
+    ball_inner_diameter: Option<Quantity<LENGTH>>,
     pub(super) ball_diameters: Option<RawBallDiameters>,
 }
 
@@ -69,6 +70,8 @@ pub struct Bearing {
     pub balls: usize,
     /// Ball diameter D_w, m.
     pub ball_diameter: f64,
+    /// Diameter of the cavity of a hollow ball, m; 0: it is solid.
+    pub ball_inner_diameter: f64,
     /// Diameter of the bottom of the inner groove d_i, m.
     pub inner_raceway_diameter: f64,
     /// Diameter of the bottom of the outer groove D_e, m.
@@ -111,6 +114,7 @@ impl RawBearing {
         let bearing = Bearing {
             balls,
             ball_diameter: self.ball_diameter.si(),
+            ball_inner_diameter: self.ball_inner_diameter.as_ref().map_or(0.0, Quantity::si),
             inner_raceway_diameter,
             outer_raceway_diameter,
             inner_groove_radius,
@@ -278,6 +282,11 @@ impl RawBearing {
                 "bearing.outer_groove_radius",
                 "a radius",
             ),
+            (
+                self.ball_inner_diameter.as_ref(),
+                "bearing.ball_inner_diameter",
+                "a diameter",
+            ),
             (Some(&self.bore_diameter), "bearing.bore_diameter", "a diameter"),
             (
                 Some(&self.outside_diameter),
@@ -295,6 +304,14 @@ impl RawBearing {
     }
 
     fn check_diameters(&self, raceways: &RacewayLengths, problems: &mut Problems) {
+        if let Some(cavity) = &self.ball_inner_diameter {
+            let rule = format!(
+                "it must be less than bearing.ball_diameter, which is {}",
+                self.ball_diameter
+            );
+            let is_less = cavity.si() < self.ball_diameter.si();
+            problems.require(is_less, "bearing.ball_inner_diameter", cavity, rule);
+        }
         let [inner, outer] = &raceways.diameters;
         let rising = [
             ("bearing.bore_diameter", &self.bore_diameter),

@@ -21,10 +21,12 @@ fn balls() -> [BallLaws; 2] {
         BallLaws {
             laws: [LAW; 2],
             across: 0.0,
+            stiffest: f64::INFINITY,
         },
         BallLaws {
             laws: [sphere(4e-10), sphere(3e-10)],
             across: 1.8e-10,
+            stiffest: 2.8e9,
         },
     ]
 }
@@ -67,7 +69,7 @@ fn growth(l: [[f64; 2]; 2]) -> [f64; 2] {
 fn the_discrete_gradient_exchanges_exactly_the_stored_energy() {
     for laws in balls() {
         for lengths in cases() {
-            let found = mean_forces(&laws, &lengths, CONSERVING, None);
+            let found = mean_forces((&laws, &[laws; 2]), &lengths, CONSERVING, None);
             let work: f64 = (0..2)
                 .map(|k| {
                     let (f, d) = (found.contacts[k].force, growth(lengths.l[k]));
@@ -88,7 +90,7 @@ fn the_weighted_discrete_gradient_only_takes_energy() {
         for lengths in cases() {
             for weight in [0.0, 0.3] {
                 let scheme = (ContactScheme::DiscreteGradient, weight);
-                let found = mean_forces(&laws, &lengths, scheme, None);
+                let found = mean_forces((&laws, &[laws; 2]), &lengths, scheme, None);
                 let loss: f64 = found.contacts.iter().map(|f| f.numerical_loss).sum();
                 assert!(loss >= 0.0, "{lengths:?}: {loss}");
                 for (f, l) in found.contacts.iter().zip(lengths.l) {
@@ -130,7 +132,8 @@ fn check_tangents(
     scheme: (ContactScheme, f64),
     damping: Option<&ContactDamping>,
 ) {
-    let at = |lengths: &BallLengths| mean_forces(laws, lengths, scheme, damped(damping, lengths));
+    let at =
+        |lengths: &BallLengths| mean_forces((laws, &[*laws; 2]), lengths, scheme, damped(damping, lengths));
     let (found, h) = (at(lengths), 1e-11);
     for (k, j) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
         let (mut low, mut high) = (*lengths, *lengths);
@@ -169,7 +172,7 @@ fn damping_only_takes_energy_and_never_pulls() {
     for laws in balls() {
         for lengths in cases() {
             let viscous = lengths.l.map(|l| viscous(&damping, 1e-6, TOUCHING, l));
-            let found = mean_forces(&laws, &lengths, CONSERVING, Some(viscous));
+            let found = mean_forces((&laws, &[laws; 2]), &lengths, CONSERVING, Some(viscous));
             for (f, l) in found.contacts.iter().zip(lengths.l) {
                 assert!(f.loss >= 0.0, "{}", f.loss);
                 assert!(f.force[0] * (l[0][0] + l[1][0]) + f.force[1] * (l[0][1] + l[1][1]) >= 0.0);

@@ -17,6 +17,7 @@
 //!
 //! Contact damping takes its coefficient at the approach at which a smooth groove has the contact's force.
 
+use contact::across::sinc;
 use contact::law::ContactForce;
 use contact::{ContactLaw, Meridian, StripForce, StripLine};
 
@@ -32,7 +33,7 @@ const SMALL_CHANGE: f64 = 1e-3;
 const SMALL_SMOOTH_CHANGE: f64 = 1e-2;
 
 /// The force across the normal and how it grows.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Lateral {
     /// M = dV/dalpha, N m/rad.
     pub moment: f64,
@@ -156,8 +157,24 @@ pub fn force_on_ring(found: &StripForce, l: Meridian) -> Meridian {
 }
 
 /// t = (-n_axial, n_radial).
-fn across(n: [f64; 2]) -> [f64; 2] {
+pub(super) fn across(n: [f64; 2]) -> [f64; 2] {
     [-n[1], n[0]]
+}
+
+/// The vector whose product with l1 - l0 is the turn of l over a step, 1/m, and its growth with l1.
+pub(super) fn turning([l0, l1]: [[f64; 2]; 2], turn: f64) -> ([f64; 2], ContactTangent) {
+    let (n, r0, r1) = (unit(l1), size(l0), size(l1));
+    let t = across(n).map(|t| t / r1);
+    let [sinc, sinc_slope] = sinc(turn);
+    let q = r0 * r1 * sinc;
+    let side = across([l0[0] + l1[0], l0[1] + l1[1]]).map(|x| x / (2.0 * q));
+    let slope = |i: usize, j: usize| {
+        // Of t(e_j): the axial unit vector turns to -radial, the radial one to axial.
+        let turned = [[0.0, -1.0], [1.0, 0.0]][i][j];
+        let q_slope = r0 * (sinc * n[j] + r1 * sinc_slope * t[j]);
+        turned / (2.0 * q) - side[i] * q_slope / q
+    };
+    (side, [0, 1].map(|i| [0, 1].map(|j| slope(i, j))))
 }
 
 /// Means of Q and M, and their growth with g and alpha at the end.
@@ -331,24 +348,18 @@ impl<'s> StripStep<'s> {
         let (n, turn) = (unit(l1), self.change(1));
         let t = across(n).map(|t| t / r1);
         let along = mean_direction(self.l);
-        let [sinc, sinc_slope] = sinc(turn);
-        let q = r0 * r1 * sinc;
-        let sum = across([l0[0] + l1[0], l0[1] + l1[1]]);
-        let side = sum.map(|x| x / (2.0 * q));
+        let (side, side_slope) = turning(self.l, turn);
         let [normal, moment] = mean.values;
         let mut result = MeanForce::default();
         for i in 0..2 {
             result.force[i] = normal * along[i] + moment * side[i];
             for j in 0..2 {
                 let identity = if i == j { 1.0 } else { 0.0 };
-                // Of t(e_j): the axial unit vector turns to -radial, the radial one to axial.
-                let turned = [[0.0, -1.0], [1.0, 0.0]][i][j];
                 let growth = mean.growth.map(|row| row[0] * n[j] + row[1] * t[j]);
-                let q_slope = r0 * (sinc * n[j] + r1 * sinc_slope * t[j]);
                 result.tangent[i][j] = growth[0] * along[i]
                     + normal * (identity - along[i] * n[j]) / (r0 + r1)
                     + growth[1] * side[i]
-                    + moment * (turned / (2.0 * q) - side[i] * q_slope / q);
+                    + moment * side_slope[i][j];
             }
         }
         result
@@ -390,14 +401,6 @@ fn divided_leg(k: usize, change: f64, [start, end]: [&StripForce; 2]) -> [f64; 3
         (gradient(end)[k] - mean) / change,
         (gradient(end)[1 - k] - gradient(start)[1 - k]) / change,
     ]
-}
-
-/// sin(x)/x and its derivative.
-fn sinc(x: f64) -> [f64; 2] {
-    if x.abs() < 1e-4 {
-        return [1.0 - x * x / 6.0, -x / 3.0];
-    }
-    [x.sin() / x, (x.cos() - x.sin() / x) / x]
 }
 
 #[cfg(test)]

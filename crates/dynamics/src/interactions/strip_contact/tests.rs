@@ -97,6 +97,7 @@ fn a_smooth_groove_has_the_means_of_hertz() {
     let ball = BallLaws {
         laws: [law; 2],
         across: 0.0,
+        stiffest: f64::INFINITY,
     };
     let damping = ContactDamping {
         coefficient: 50.0,
@@ -113,7 +114,7 @@ fn a_smooth_groove_has_the_means_of_hertz() {
             (ContactScheme::Pointwise, 0.4),
         ] {
             let viscous = [crate::interactions::contact_damping::viscous(&damping, 1e-5, TOUCHING, l); 2];
-            let exact = mean_forces(&ball, &lengths, scheme, Some(viscous)).contacts[0];
+            let exact = mean_forces((&ball, &[ball; 2]), &lengths, scheme, Some(viscous)).contacts[0];
             let found = site.mean_force(l.map(Meridian::from), scheme, Some((&damping, 1e-5)));
             for i in 0..2 {
                 let size = size(exact.force).max(1e-3);

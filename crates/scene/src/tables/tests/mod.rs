@@ -9,6 +9,7 @@ mod cage;
 mod catalogue;
 mod effects;
 mod good;
+mod hollow_balls;
 mod include;
 mod life;
 mod lubricant;
