@@ -35,7 +35,7 @@ fn a_log_says_what_is_left_out_of_a_turning_ring() {
         .stderr
     };
     let slow = "speed.inner=1800 rpm";
-    let left_out = "inner ring: the inertia of its elastic part is left out in its turning frame: about ";
+    let left_out = "inner ring: the inertia of its elastic part is left out in its turning frame: at most ";
     let said = run("whole", &[slow]);
     assert!(
         said.contains(left_out) && said.contains("negligible = 1e-6"),

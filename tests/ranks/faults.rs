@@ -15,7 +15,15 @@ use crate::util::{Dir, Outcome, SCENE};
 
 /// An interface that ranks divide.
 const MANY: [&str; 4] = ["--set", "solver.backend=sector", "--set", "solver.sectors=17"];
-const CYCLIC: [&str; 2] = ["--set", "solver.backend=cyclic"];
+/// Harmonics that ranks share, with a turning ring whose elastic part has no inertia.
+const CYCLIC: [&str; 6] = [
+    "--set",
+    "solver.backend=cyclic",
+    "--set",
+    "speed.inner=1800 rpm",
+    "--set",
+    "effects.frame_rotation={}",
+];
 
 /// A place that sends messages: the operation, and how often rank 0 calls it in a run.
 type Places = BTreeMap<String, (String, usize)>;
@@ -113,7 +121,11 @@ fn cases() -> Vec<Case> {
             small_motion(),
             "scene.toml",
             &CYCLIC,
-            &["solver/src/cyclic/factor.rs", "cli/motion.rs"],
+            &[
+                "solver/src/cyclic/factor.rs",
+                "solver/src/cyclic/definite.rs",
+                "cli/motion.rs",
+            ],
         ),
         run(
             with(SCENE.replace("[static]", series)),

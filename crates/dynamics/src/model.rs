@@ -177,7 +177,17 @@ impl InertiaLimit {
     /// Share of the forces on a ring with this first natural frequency, rad/s, that the inertia of its elastic part is:
     /// centrifugal, Coriolis and Euler forces.
     pub fn share(&self, first_frequency: f64) -> f64 {
-        (self.largest_speed * self.largest_speed + self.largest_acceleration) / first_frequency.powi(2)
+        self.turning() / first_frequency.powi(2)
+    }
+
+    /// First natural frequency of a ring, rad/s, above which the inertia is below that share.
+    pub fn frequency(&self) -> f64 {
+        (self.turning() / self.negligible).sqrt()
+    }
+
+    /// Inertia per mass and displacement, 1/s^2.
+    fn turning(&self) -> f64 {
+        self.largest_speed * self.largest_speed + self.largest_acceleration
     }
 }
 

@@ -12,6 +12,7 @@ use std::sync::Arc;
 
 use body::BesideRing;
 use contact::cross;
+use solver::cyclic::Definite;
 
 use crate::coordinates::{Coordinates, RIGID_MOTIONS};
 use crate::division::NodePlaces;
@@ -147,6 +148,12 @@ pub trait ElasticBody: Send + Sync {
 
     /// Kinetic and strain energy, J.
     fn energies(&self, state: &RingState) -> [f64; 2];
+
+    /// Whether all natural frequencies of the ring, whose partner is at rest, are above one, rad/s; unknown where that
+    /// takes a search. Collective.
+    fn vibrates_above(&self, _frequency: f64) -> Result<Definite, RingError> {
+        Ok(Definite::Unknown)
+    }
 
     /// The body to which the ring is tied, if there is one.
     fn tied(&self) -> Option<&Oscillators> {

@@ -14,14 +14,15 @@
 //! the step is that of a frame that stands, under the load of the undeformed ring. Free vibrations feel the Coriolis
 //! force to first order: their frequencies lack a splitting by up to 2 W / w_1 of themselves.
 //!
-//! An upper bound of w_1 comes first, at next to no cost; w_1 itself only where the bound does not decide. The choice
-//! follows from scene and meshes alone: the largest speed is that of the whole table of speeds, however long the run.
+//! An upper bound of w_1 comes first, at next to no cost. Only where it does not decide the ring is asked whether w_1
+//! is above the limit ([`ring::first_frequency`]). The choice follows from scene and meshes alone: the largest speed is
+//! that of the whole table of speeds, however long the run.
 //! These rings keep all: free ones and those tied to a body, whose rigid motion the shaft does not take; those whose
 //! stress stiffens them, because the scene asks for that; and those on a shaft that moves across its axis whose own
 //! inertia is not that of a body of revolution, as `FrameInertia` has it.
 
 use contact::Side;
-use ring::first_frequency::{first_frequency, first_frequency_bound};
+use ring::first_frequency::{FrequencyBounds, first_frequency_above, first_frequency_bound};
 use ring::statics::StaticSettings;
 use ring::{ElasticBody, Frame, FrameTurn, Hold, RingModel};
 
@@ -33,8 +34,8 @@ use crate::model::{InertiaLimit, Model};
 /// Inertia of a ring's elastic part that is left out.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LeftOut {
-    /// First natural frequency of the ring as it is held, less the bound of its error, rad/s.
-    pub first_frequency: f64,
+    /// First natural frequency of the ring as it is held, rad/s.
+    pub first_frequency: FrequencyBounds,
     /// Largest speed and acceleration, and the share of the forces below which nothing acts.
     pub limit: InertiaLimit,
     /// Generalised loads of the undeformed ring by the square of the speed and by the acceleration, of unit values.
@@ -42,22 +43,25 @@ pub struct LeftOut {
 }
 
 impl LeftOut {
-    /// Share of the forces on the ring that is left out.
+    /// Share of the forces on the ring that is left out, at most.
     pub fn share(&self) -> f64 {
-        self.limit.share(self.first_frequency)
+        self.limit.share(self.first_frequency.least)
     }
 
     /// What is left out, for a log.
     pub fn note(&self) -> String {
+        let FrequencyBounds { least, most } = self.first_frequency;
+        let in_khz = |frequency: f64| frequency / std::f64::consts::TAU / 1e3;
         format!(
-            "the inertia of its elastic part is left out in its turning frame: about {:.1e} of the forces, (largest \
-             speed^2 + acceleration) / (first natural frequency {:.2} kHz)^2, is below \
+            "the inertia of its elastic part is left out in its turning frame: at most {:.1e} of the forces, (largest \
+             speed^2 + acceleration) / (first natural frequency, {:.4} to {:.4} kHz)^2, is below \
              effects.frame_rotation.negligible = {:e}; free vibrations lack the splitting of their frequencies by up \
              to 2 speed / frequency = {:.1e}",
             self.share(),
-            self.first_frequency / std::f64::consts::TAU / 1e3,
+            in_khz(least),
+            in_khz(most),
             self.limit.negligible,
-            2.0 * self.limit.largest_speed / self.first_frequency
+            2.0 * self.limit.largest_speed / least
         )
     }
 
@@ -81,8 +85,14 @@ pub(super) fn left_out(
     };
     let is_on_partner = ring.hold != Hold::Free && ring.tie.is_none();
     let is_asked = model.frame(side) == Frame::Turning && limit.negligible > 0.0;
-    let is_small = |frequency: f64| limit.share(frequency) < limit.negligible;
-    if !is_asked || !is_on_partner || !is_small(first_frequency_bound(body, ring)) {
+    if !is_asked || !is_on_partner {
+        return Ok(None);
+    }
+    let bounds = FrequencyBounds {
+        least: limit.frequency(),
+        most: first_frequency_bound(body, ring),
+    };
+    if bounds.most.is_nan() || bounds.most <= bounds.least {
         return Ok(None);
     }
     if side.choose(wobbles, false) && body.unroundness() >= limit.negligible {
@@ -94,9 +104,9 @@ pub(super) fn left_out(
         backend: model.backend,
         n_contacts: 1,
     };
-    let least = first_frequency(body, ring, settings)?.least();
-    Ok(is_small(least).then(|| LeftOut {
-        first_frequency: least,
+    let first_frequency = first_frequency_above((body, ring), bounds, settings)?;
+    Ok(first_frequency.map(|first_frequency| LeftOut {
+        first_frequency,
         limit,
         undeformed: undeformed(body),
     }))

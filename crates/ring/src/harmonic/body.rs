@@ -2,6 +2,8 @@
 
 use std::sync::Arc;
 
+use solver::cyclic::Definite;
+
 use super::harmonics::HarmonicBody;
 use super::space::{from_harmonics, to_harmonics};
 use super::step::HarmonicFactor;
@@ -86,6 +88,14 @@ impl ElasticBody for HarmonicBody {
 
     fn energies(&self, state: &RingState) -> [f64; 2] {
         self.space.energies(state)
+    }
+
+    fn vibrates_above(&self, frequency: f64) -> Result<Definite, RingError> {
+        let above = self.harmonics.vibrate_above(&self.held, frequency);
+        above.map_err(|source| RingError::Solver {
+            side: self.held.name,
+            source,
+        })
     }
 
     fn step_factor(self: Arc<Self>, scheme: StepScheme) -> Result<Box<dyn StepFactor>, RingError> {

@@ -4,13 +4,13 @@
 //! ([`solver::cyclic`]). The clamped bore that follows the shaft is a border.
 
 use mesh::NodePositions;
-use solver::cyclic::{CyclicBordered, Defect, ResponseTable, RowResponses};
+use solver::cyclic::{CyclicBordered, Defect, Definite, DefiniteTest, ResponseTable, RowResponses};
 use solver::{CyclicRing, LinearSolver, SolverError};
 
 use super::defect_change::Changes;
 use super::defect_step::DefectFactor;
 use super::factor::{CyclicFactor, Responses};
-use super::periodic::{Defective, HeldSectors, Periodic};
+use super::periodic::{Defective, HeldSectors, Periodic, PeriodicSectors};
 use super::space::HarmonicSpace;
 use crate::body::HeldRing;
 use crate::coordinates::Coordinates;
@@ -19,6 +19,7 @@ use crate::matrices::{NodalMatrices, Nodes, Stencils};
 use crate::memory::MotionSizes;
 use crate::model::RingModel;
 use crate::mount::MountColumns;
+use crate::sparse::SparseLoad;
 use dense::DenseCholesky;
 
 /// A periodic ring before S is known.
@@ -182,6 +183,24 @@ impl Harmonics {
             Some(seen) => solver.seen_at(seen),
             None => solver,
         })
+    }
+
+    /// Whether all natural frequencies of a ring without a defect, whose partner is at rest, are above one, rad/s:
+    /// K - w^2 M is positive definite where the mount does not move. Collective.
+    pub fn vibrate_above(&self, held: &HeldRing, frequency: f64) -> Result<Definite, SolverError> {
+        if self.defect.is_some() {
+            return Ok(Definite::Unknown);
+        }
+        let PeriodicSectors {
+            ring,
+            stiffness,
+            mass,
+            ..
+        } = &self.held.sectors;
+        // A mount of the partner's own dofs holds no node.
+        let own = |row: &&SparseLoad| row.iter().all(|&(i, _)| i < ring.n());
+        let held: Vec<SparseLoad> = held.mount.rigid().iter().filter(own).cloned().collect();
+        DefiniteTest::new(ring, &held)?.of(&stiffness.combined(1.0, -frequency * frequency, mass)?)
     }
 
     /// What contacts, partner and defect need of a factor, and the section nodes of raceway and defect.

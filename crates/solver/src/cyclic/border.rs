@@ -7,6 +7,7 @@
 use dense::DenseCholesky;
 
 use super::factor::CyclicCholesky;
+use super::ring::CyclicRing;
 use crate::bordered::factor_complement;
 use crate::error::SolverError;
 use crate::linear_solver::LinearSolver;
@@ -39,26 +40,12 @@ impl CyclicBordered {
         let (n, ring) = (factor.n(), factor.ring().clone());
         assert_eq!(border.len(), n * m, "a border of {m} columns of {n} rows");
         assert_eq!(corner.len(), m * m, "a corner of {m} rows");
-        let (len, group_len) = (ring.harmonic_len(), ring.group_len());
-        let mut rows = vec![0.0; group_len * m];
+        let group_len = ring.group_len();
+        let rows = ring.first_group(border)?;
         let mut columns = rows.clone();
-        let mut harmonic = vec![0.0; len];
-        for (column, nodal) in border.chunks_exact(n.max(1)).enumerate() {
-            ring.to_harmonic(nodal, &mut harmonic);
-            let (low, high) = harmonic.split_at_mut(group_len);
-            let largest = |x: &[f64]| x.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
-            let share = largest(high) / largest(low).max(f64::MIN_POSITIVE);
-            // Written so that NaN is refused as well.
-            let is_low = share <= BEYOND && low.iter().all(|x| x.is_finite());
-            if !is_low {
-                return Err(SolverError::BorderBeyond { column, share });
-            }
-            high.fill(0.0);
-            let range = group_len * column..group_len * (column + 1);
-            rows[range.clone()].copy_from_slice(low);
-            factor.solve_first_group(low);
-            columns[range].copy_from_slice(low);
-        }
+        columns
+            .chunks_exact_mut(group_len.max(1))
+            .for_each(|column| factor.solve_first_group(column));
         let mut complement = corner.to_vec();
         for i in 0..m {
             for j in 0..=i {
@@ -151,6 +138,28 @@ impl CyclicBordered {
         for (q, z) in q.iter().zip(self.columns.chunks_exact(low.len().max(1))) {
             low.iter_mut().zip(z).for_each(|(w, z)| *w -= q * z);
         }
+    }
+}
+
+impl CyclicRing {
+    /// First group of the harmonics of nodal columns, column-major `[n][m]`, that reach no further: `[m][group]`.
+    pub(super) fn first_group(&self, nodal: &[f64]) -> Result<Vec<f64>, SolverError> {
+        let (n, group_len) = (self.n(), self.group_len());
+        let mut rows = Vec::with_capacity(group_len * nodal.len().checked_div(n).unwrap_or(0));
+        let mut harmonic = vec![0.0; self.harmonic_len()];
+        for (column, nodal) in nodal.chunks_exact(n.max(1)).enumerate() {
+            self.to_harmonic(nodal, &mut harmonic);
+            let (low, high) = harmonic.split_at(group_len);
+            let largest = |x: &[f64]| x.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+            let share = largest(high) / largest(low).max(f64::MIN_POSITIVE);
+            // Written so that NaN is refused as well.
+            let is_low = share <= BEYOND && low.iter().all(|x| x.is_finite());
+            if !is_low {
+                return Err(SolverError::BorderBeyond { column, share });
+            }
+            rows.extend_from_slice(low);
+        }
+        Ok(rows)
     }
 }
 

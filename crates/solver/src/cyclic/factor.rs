@@ -21,7 +21,7 @@ use crate::linear_solver::LinearSolver;
 const MIRROR: f64 = 1e-12;
 
 /// Smallest accepted pivot relative to its diagonal entry, as for the sparse factorisation.
-const PIVOT_LIMIT: f64 = 1e-12;
+pub(super) const PIVOT_LIMIT: f64 = 1e-12;
 
 /// Right-hand sides transformed to harmonic space at a time.
 const COLUMNS: usize = 8;
@@ -57,11 +57,22 @@ impl Symmetry {
 
 /// What keeps a ring from moving as a whole.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Restraint {
+pub(super) enum Restraint {
     /// Supports or inertia, which are in the matrix.
     Matrix,
     /// Springs added to it, see [`CyclicRing::factor_unheld`].
     Springs,
+}
+
+/// Harmonic and component of the springs that hold a ring: (azimuthal, axial) and (radial, axial).
+pub(super) const SPRINGS: [(usize, usize); 4] = [(0, 1), (0, 2), (1, 0), (1, 2)];
+
+/// What the factorisation of a group of harmonics tells.
+pub(super) struct FactoredGroup {
+    /// Every pivot divided by its diagonal entry, `[n][3][LANES]`.
+    pub(super) ratios: Vec<f64>,
+    /// Stiffness of the springs that were added, in the first group of [`Restraint::Springs`].
+    pub(super) springs: [f64; SPRINGS.len()],
 }
 
 impl CyclicRing {
@@ -139,8 +150,7 @@ impl CyclicRing {
         hold: Restraint,
         mut values: Vec<f64>,
     ) -> Result<CyclicCholesky, SolverError> {
-        let shared = &self.shared;
-        let group_len = 9 * F::PARTS * LANES * shared.rows.n_blocks();
+        let group_len = self.factor_len::<F>();
         let own = self.own_groups();
         let len = group_len * own.len();
         values.truncate(len);
@@ -150,29 +160,11 @@ impl CyclicRing {
             bytes: size_of::<f64>() * len,
         }))?;
         values.resize(len, 0.0);
-        let arch = Arch::new();
         let outcomes: Vec<Result<(), SolverError>> = values
             .par_chunks_mut(group_len.max(1))
             .zip(own)
             .map(|(values, group)| {
-                arch.dispatch(Fill::<F> {
-                    shared,
-                    matrix,
-                    group,
-                    values,
-                    form: PhantomData,
-                });
-                if group == 0 && hold == Restraint::Springs {
-                    self.add_springs::<F>(values);
-                }
-                let mut ratios = vec![0.0; 3 * LANES * self.n_section_nodes()];
-                arch.dispatch(Factorise::<F> {
-                    rows: &shared.rows,
-                    values,
-                    ratios: &mut ratios,
-                    form: PhantomData,
-                });
-                self.check_pivots(&ratios)
+                self.check_pivots(&self.factor_group::<F>((matrix, group), hold, values).ratios)
             })
             .collect();
         self.agree(outcomes.into_iter().collect::<Result<(), SolverError>>())?;
@@ -184,6 +176,40 @@ impl CyclicRing {
         })
     }
 
+    /// Numbers of the factor of a group.
+    pub(super) fn factor_len<F: Form>(&self) -> usize {
+        9 * F::PARTS * LANES * self.shared.rows.n_blocks()
+    }
+
+    /// Factors a group of harmonics in `values`, whatever was there.
+    pub(super) fn factor_group<F: Form>(
+        &self,
+        (matrix, group): (&CyclicMatrix, usize),
+        hold: Restraint,
+        values: &mut [f64],
+    ) -> FactoredGroup {
+        let (shared, arch) = (&self.shared, Arch::new());
+        arch.dispatch(Fill::<F> {
+            shared,
+            matrix,
+            group,
+            values,
+            form: PhantomData,
+        });
+        let springs = match hold {
+            Restraint::Springs if group == 0 => self.add_springs::<F>(values),
+            _ => [0.0; SPRINGS.len()],
+        };
+        let mut ratios = vec![0.0; 3 * LANES * self.n_section_nodes()];
+        arch.dispatch(Factorise::<F> {
+            rows: &shared.rows,
+            values,
+            ratios: &mut ratios,
+            form: PhantomData,
+        });
+        FactoredGroup { ratios, springs }
+    }
+
     /// A failure of one rank is one of all.
     #[track_caller]
     pub(super) fn agree<T>(&self, result: Result<T, SolverError>) -> Result<T, SolverError> {
@@ -191,17 +217,19 @@ impl CyclicRing {
             .agree(result, |rank, message| SolverError::OnRank { rank, message })
     }
 
-    /// Doubles the diagonal entries of the node eliminated last that hold the ring: (azimuthal, axial) in
-    /// harmonic 0, (radial, axial) in harmonic 1.
-    fn add_springs<F: Form>(&self, values: &mut [f64]) {
+    /// Doubles the diagonal entries of the node eliminated last that hold the ring, [`SPRINGS`]. What it adds.
+    fn add_springs<F: Form>(&self, values: &mut [f64]) -> [f64; SPRINGS.len()] {
         let rows = &self.shared.rows;
         let Some(last) = rows.n().checked_sub(1) else {
-            return;
+            return [0.0; SPRINGS.len()];
         };
         let block = &mut values[rows.place(last, last) * 9 * F::PARTS * LANES..];
-        for (harmonic, component) in [(0, 1), (0, 2), (1, 0), (1, 2)] {
-            block[4 * component * F::PARTS * LANES + harmonic] *= 2.0;
-        }
+        SPRINGS.map(|(harmonic, component)| {
+            let entry = &mut block[4 * component * F::PARTS * LANES + harmonic];
+            let stiffness = *entry;
+            *entry *= 2.0;
+            stiffness
+        })
     }
 
     /// Refuses pivots that are not positive or nothing but round-off.

@@ -14,6 +14,7 @@ use super::border::CyclicBordered;
 use super::factor::{CyclicCholesky, Symmetry};
 use super::number::{Form, Hermitian, Real};
 use super::phases::LANES;
+use super::ring::CyclicRing;
 use super::sweep::{Solve, Sweeps};
 
 impl CyclicBordered {
@@ -129,11 +130,17 @@ impl CyclicCholesky {
         }
     }
 
-    /// Two vectors at a time.
     fn sweep_form<F: Form>(&self, group: usize, columns: Vec<&mut [f64]>, sweeps: Sweeps) {
-        let rows = &self.ring().shared.rows;
-        let group_len = 9 * F::PARTS * LANES * rows.n_blocks();
+        let group_len = self.ring().factor_len::<F>();
         let values = &self.values[group * group_len..(group + 1) * group_len];
+        self.ring().sweep_group::<F>(values, columns, sweeps);
+    }
+}
+
+impl CyclicRing {
+    /// Does these sweeps with the factor `values` of a group, two vectors at a time.
+    pub(super) fn sweep_group<F: Form>(&self, values: &[f64], columns: Vec<&mut [f64]>, sweeps: Sweeps) {
+        let rows = &self.shared.rows;
         let (arch, form) = (Arch::new(), PhantomData);
         let mut columns = columns.into_iter();
         while let Some(first) = columns.next() {

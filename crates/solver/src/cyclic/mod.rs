@@ -41,6 +41,7 @@
 mod assemble;
 mod border;
 mod defect;
+mod definite;
 mod factor;
 mod factor_rows;
 mod halves;
@@ -68,6 +69,7 @@ mod transform;
 
 pub use border::CyclicBordered;
 pub use defect::{Change, CyclicDefect, Defect, conjugate_gradients};
+pub use definite::{Definite, DefiniteTest};
 pub use factor::{CyclicCholesky, Symmetry};
 pub use loose::Loose;
 pub use matrix::CyclicMatrix;

@@ -3,6 +3,7 @@
 #[path = "../common/mod.rs"]
 mod common;
 mod defect;
+mod definite;
 mod halves;
 mod hold;
 mod rings;
