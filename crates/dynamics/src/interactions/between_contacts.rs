@@ -1,6 +1,6 @@
 //! What the angle between the contacts of a ball does to their forces.
 //!
-//! A contact yields by x times the force of the other one of its ball, and x depends on the difference delta of the
+//! A contact yields by x times the force of the other one of its ball. x depends on the difference delta of the
 //! contact angles, inner less outer ([`contact::across`]). The energy V(g_i, g_o, x) of [`contact::law`] has dV/dx =
 //! -Q_i Q_o, so besides the normal forces there is a couple M = dV/d delta = -Q_i Q_o x'(delta): the force M/|l| t on
 //! the inner ring and -M/|l| t on the outer one, t = (-n_axial, n_radial). It comes from the slope that the ball's
@@ -93,8 +93,8 @@ impl BallContacts {
     }
 }
 
-/// The derivatives over both lengths l of the force of contact `k` on its ring that the other one's length has: by the
-/// growth of the forces with the approaches, and by what both have across their normals.
+/// How the force of contact `k` on its ring grows with l of the ball's other contact, N/m: by `growth` with the
+/// approach of that one, and with its angle. `slopes` are those of the approaches over l.
 pub fn of_other(
     k: usize,
     growth: f64,
