@@ -157,7 +157,7 @@ impl Rod {
             touching,
             lever: 0.0,
             law,
-            across: 0.0,
+            across: Default::default(),
             unevenness: None,
             strips: None,
             ends: None,

@@ -93,8 +93,8 @@ impl BallContacts {
     }
 }
 
-/// How the force of contact `k` on its ring grows with l of the ball's other contact, N/m: by `growth` with the approach
-/// of that one, and with its angle. `slopes` are those of the approaches over l.
+/// How the force of contact `k` on its ring grows with l of the ball's other contact, N/m: by `growth` with the
+/// approach of that one, and with its angle. `slopes` are those of the approaches over l.
 pub fn of_other(
     k: usize,
     growth: f64,
