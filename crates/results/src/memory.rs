@@ -255,7 +255,7 @@ fn of_machine(listed: &str) -> Option<u64> {
 
 /// Steps of a motion that wait to be written at a time.
 pub fn queued_steps(dynamic: &Dynamic) -> usize {
-    if dynamic.output_every <= OFTEN { 2 } else { 0 }
+    if dynamic.output_every <= OFTEN { 1 } else { 0 }
 }
 
 /// Number of threads that make rings: ranks make one after the other.
