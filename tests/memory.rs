@@ -185,7 +185,7 @@ fn check_prints_the_forecast_of_the_run() {
 /// Wrong: a run that outgrows a limit of its memory would abort, which tells a user nothing, or spoil what it saved.
 #[test]
 fn a_run_short_of_memory_ends_with_a_message() {
-    let dir = rings(180, ElementKind::Hex8);
+    let dir = rings(360, ElementKind::Hex8);
     let motion =
         "[dynamic]\nduration = \"0.1 ms\"\nstep = \"20 us\"\noutput_every = 1\nledger_tolerance = 1e-3";
     dir.write("scene.toml", SCENE.replace("[static]", motion));
