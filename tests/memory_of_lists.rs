@@ -7,9 +7,8 @@ use crate::several::{parts, succeeds};
 use crate::util::Dir;
 
 /// Largest relative difference of forecast and measured peak that is promised, as for one bearing. Measured: -6 to
-/// +10 % at rest, +3 to +9 % in motion, two and four bearings of 13 k to 68 k nodes, 1 and 2 threads. On
-/// a busy machine two threads make fewer rings at a time, and the peak can be a fifth less: half as much more is allowed
-/// on that side.
+/// +10 % at rest, +3 to +9 % in motion, two and four bearings of 13 k to 68 k nodes, 1 and 2 threads. On a busy machine
+/// two threads make fewer rings at a time, and the peak can be a fifth less: half as much more is allowed there.
 const TOLERANCE: f64 = 0.2;
 
 /// Back to back, one bearing or pair after the other, on a beam.
