@@ -43,12 +43,41 @@ pub(crate) fn write_hdf(
     Unsealed::write(dir, name, format, fill)?.publish()
 }
 
-/// A file that lacks its seal and its name: dropped, it is gone.
+/// The temporary name of a file in a folder: dropped, what is there is gone.
 #[derive(Debug)]
-pub(crate) struct Unsealed {
+struct Draft {
     dir: PathBuf,
     tmp: PathBuf,
     path: PathBuf,
+}
+
+impl Draft {
+    fn new(dir: &Path, name: &str) -> Draft {
+        Draft {
+            dir: dir.to_path_buf(),
+            tmp: temporary(dir, name),
+            path: dir.join(name),
+        }
+    }
+
+    /// Gives the file its name.
+    fn publish(self) -> Result<(), CheckpointError> {
+        let failed = CheckpointError::io("rename the finished file in", &self.dir);
+        fs::rename(&self.tmp, &self.path).map_err(failed)
+    }
+}
+
+impl Drop for Draft {
+    fn drop(&mut self) {
+        // A published file has another name. A failure leaves a hidden file, overwritten by the next attempt.
+        let _ = fs::remove_file(&self.tmp);
+    }
+}
+
+/// A file that lacks its seal and its name: dropped, it is gone.
+#[derive(Debug)]
+pub(crate) struct Unsealed {
+    draft: Draft,
     extents: Vec<Extent>,
 }
 
@@ -60,30 +89,19 @@ impl Unsealed {
         format: Format,
         fill: impl FnOnce(&hdf5::File) -> hdf5::Result<Vec<String>>,
     ) -> Result<Unsealed, CheckpointError> {
-        let mut unsealed = Unsealed {
-            dir: dir.to_path_buf(),
-            tmp: temporary(dir, name),
-            path: dir.join(name),
-            extents: Vec::new(),
-        };
-        let written = create_hdf(&unsealed.tmp, format, fill);
-        unsealed.extents = written.map_err(CheckpointError::hdf("write", &unsealed.path))?;
-        Ok(unsealed)
+        let draft = Draft::new(dir, name);
+        let extents = create_hdf(&draft.tmp, format, fill);
+        let extents = extents.map_err(CheckpointError::hdf("write", &draft.path))?;
+        Ok(Unsealed { draft, extents })
     }
 
     /// Seals the file, brings it to the disk and gives it its name.
-    pub fn publish(mut self) -> Result<(), CheckpointError> {
-        let sealed = append_seal(&self.tmp, std::mem::take(&mut self.extents));
-        let sealed = sealed.map_err(CheckpointError::io("write", &self.path));
-        publish(sealed, &self.dir, &self.tmp, &self.path)?;
-        sync_dir(&self.dir)
-    }
-}
-
-impl Drop for Unsealed {
-    fn drop(&mut self) {
-        // A published file has another name. A failure leaves a hidden file, which the next run removes.
-        let _ = fs::remove_file(&self.tmp);
+    pub fn publish(self) -> Result<(), CheckpointError> {
+        let Unsealed { draft, extents } = self;
+        append_seal(&draft.tmp, extents).map_err(CheckpointError::io("write", &draft.path))?;
+        let dir = draft.dir.clone();
+        draft.publish()?;
+        sync_dir(&dir)
     }
 }
 
@@ -97,41 +115,37 @@ pub(crate) fn write_unnamed_hdf(
 ) -> Result<File, CheckpointError> {
     let now = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
     let own = format!("{name}.{}.{}", std::process::id(), now.as_nanos());
-    let tmp = temporary(dir, &own);
-    let written = create_hdf(&tmp, format, fill)
-        .map_err(CheckpointError::hdf("write", &tmp))
-        .and_then(|extents| append_seal(&tmp, extents).map_err(CheckpointError::io("write", &tmp)))
-        .and_then(|()| File::open(&tmp).map_err(CheckpointError::io("open", &tmp)));
-    // A failure to remove it leaves a hidden file, no wrong result.
-    let _ = fs::remove_file(&tmp);
-    written
+    let Draft { tmp, .. } = &Draft::new(dir, &own);
+    let extents = create_hdf(tmp, format, fill).map_err(CheckpointError::hdf("write", tmp))?;
+    append_seal(tmp, extents).map_err(CheckpointError::io("write", tmp))?;
+    File::open(tmp).map_err(CheckpointError::io("open", tmp))
 }
 
 /// Writes all of the file `content` into `dir` under `name`.
 pub(crate) fn write_copy(dir: &Path, name: &str, mut content: &File) -> Result<(), CheckpointError> {
-    let (tmp, path) = (temporary(dir, name), dir.join(name));
+    let draft = Draft::new(dir, name);
     let mut copy = || {
         content.rewind()?;
-        let mut file = create_fresh(&tmp)?;
+        let mut file = create_fresh(&draft.tmp)?;
         std::io::copy(&mut content, &mut file)?;
         file.sync_all()
     };
-    let written = copy().map_err(CheckpointError::io("write", &path));
-    publish(written, dir, &tmp, &path)?;
+    copy().map_err(CheckpointError::io("write", &draft.path))?;
+    draft.publish()?;
     sync_dir(dir)
 }
 
 /// Writes a text file `name` into `dir`. Its content is on the disk before it gets its name, so that a crash of the
 /// machine leaves the old text or the new one; the folder is not waited for, the old text does no harm.
 pub(crate) fn write_text(dir: &Path, name: &str, text: &str) -> Result<(), CheckpointError> {
-    let (tmp, path) = (temporary(dir, name), dir.join(name));
+    let draft = Draft::new(dir, name);
     let write = || {
-        let mut file = create_fresh(&tmp)?;
+        let mut file = create_fresh(&draft.tmp)?;
         file.write_all(text.as_bytes())?;
         file.sync_all()
     };
-    let written = write().map_err(CheckpointError::io("write", &path));
-    publish(written, dir, &tmp, &path)
+    write().map_err(CheckpointError::io("write", &draft.path))?;
+    draft.publish()
 }
 
 /// Brings the names in a folder to the disk.
@@ -152,23 +166,6 @@ fn remove_if_there(tmp: &Path) -> std::io::Result<()> {
         Err(error) if error.kind() != std::io::ErrorKind::NotFound => Err(error),
         _ => Ok(()),
     }
-}
-
-/// Gives the temporary file its name, or removes it when writing failed.
-fn publish(
-    written: Result<(), CheckpointError>,
-    dir: &Path,
-    tmp: &Path,
-    path: &Path,
-) -> Result<(), CheckpointError> {
-    let published = written.and_then(|()| {
-        fs::rename(tmp, path).map_err(CheckpointError::io("rename the finished file in", dir))
-    });
-    if published.is_err() {
-        // The first error is the one to report; a leftover here is hidden and overwritten by the next attempt.
-        let _ = fs::remove_file(tmp);
-    }
-    published
 }
 
 /// Everything is flushed before the file is closed: errors of a flush are reported, those of a close only if the

@@ -80,12 +80,7 @@ impl BackgroundOutput {
         let dir = output.dir().to_path_buf();
         let failed = Arc::new(AtomicBool::new(false));
         let tell = Arc::clone(&failed);
-        let write = move || {
-            let written = write_all(output, waiting, &companions, &tell);
-            tell.fetch_or(written.is_err(), Ordering::Relaxed);
-            written
-        };
-        let writer = thread::Builder::new().spawn(write);
+        let writer = thread::Builder::new().spawn(move || write_all(output, waiting, &companions, &tell));
         Ok(BackgroundOutput {
             queue: Some(queue),
             writer: Some(writer.map_err(CheckpointError::io(START, &dir))?),

@@ -22,7 +22,7 @@ use super::fields;
 use super::film::FilmLaw;
 use super::folder;
 use super::log;
-use super::memory::Forecasts;
+use super::memory::{Forecasts, QUEUE};
 use super::motion_fields::RestartState;
 use super::probes::PlacedProbes;
 use super::reduction::{REDUCTION_FILE, ReducedStress, StressReduction};
@@ -35,9 +35,6 @@ use super::summary::{Costs, DISK, DISK_WAIT, GATHER, NEAR_FIELD, OUTPUT, READ, R
 use super::tables::{OwnColumns, Tables};
 use crate::failure::Failure;
 use crate::survey::Survey;
-
-/// Steps that may wait, besides the one being made and the one being written.
-const QUEUE: usize = 1;
 
 /// The files of one run. Rank 0 writes for all; on the others there are none, and writing does nothing. The stress of
 /// rings in sectors is recovered by all ranks.

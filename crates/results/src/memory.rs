@@ -21,6 +21,8 @@ use crate::seat::tied;
 
 /// Steps between files up to which files wait for the disk.
 const OFTEN: u64 = 10;
+/// Steps that may wait, besides the one being made and the one being written.
+pub(super) const QUEUE: usize = 1;
 
 /// Functions of a seat as the mount of a moving ring: dofs and columns, bytes per function and node, measured.
 const MOUNT_BYTES: usize = 40;
@@ -255,7 +257,7 @@ fn of_machine(listed: &str) -> Option<u64> {
 
 /// Steps of a motion that wait to be written at a time.
 pub fn queued_steps(dynamic: &Dynamic) -> usize {
-    if dynamic.output_every <= OFTEN { 1 } else { 0 }
+    if dynamic.output_every <= OFTEN { QUEUE } else { 0 }
 }
 
 /// Number of threads that make rings: ranks make one after the other.
