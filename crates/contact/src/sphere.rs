@@ -33,6 +33,7 @@
 use crate::across::AcrossCompliance;
 use crate::geometry::BySide;
 use crate::hertz::{Elastic, HertzContact};
+use crate::semi_axes::SemiAxes;
 use crate::shell;
 
 /// Terms of the series; what is left falls with their square.
@@ -77,12 +78,13 @@ impl SphereCompliance {
 
 /// Thinnest wall of a hollow ball on which contacts are still Hertz's, m: twice the larger semi-axis at 1.5 GPa.
 pub fn least_wall(contacts: &[HertzContact; 2]) -> f64 {
-    let larger = |hertz: &HertzContact| {
-        hertz
-            .semi_axes((PRESSURE / hertz.peak_pressure(1.0)).powi(3))
-            .major()
-    };
-    2.0 * larger(&contacts[0]).max(larger(&contacts[1]))
+    let [inner, outer] = contacts.each_ref().map(|hertz| ellipse(hertz).major());
+    2.0 * inner.max(outer)
+}
+
+/// Semi-axes at [`PRESSURE`], m.
+fn ellipse(contact: &HertzContact) -> SemiAxes {
+    contact.semi_axes((PRESSURE / contact.peak_pressure(1.0)).powi(3))
 }
 
 /// The series of one ball.
@@ -143,9 +145,8 @@ impl LegendreSeries {
 
     /// By how much less than a half-space the contact yields, m/N.
     fn own(&self, contact: &HertzContact) -> f64 {
-        let force = (PRESSURE / contact.peak_pressure(1.0)).powi(3);
-        let [c, d] = contact.semi_axes(force).into();
-        let half = 0.25 * (c + d) / self.radius;
+        let axes = ellipse(contact);
+        let half = 0.25 * (axes.groove + axes.rolling) / self.radius;
         let logarithm = half.ln() + half.ln_1p() + MEAN_LOGARITHM + GROWTH;
         let sum: f64 = self.rest.iter().rev().sum();
         -(sum - self.half_space * self.logarithm * logarithm) / (4.0 * std::f64::consts::PI * self.radius)
