@@ -4,12 +4,12 @@ mod support;
 
 use dynamics::effects::{BallCentrifugal, GyroscopicMoment, MomentShares, Now};
 use dynamics::kinematics::{BallSpeeds, Speed};
-use dynamics::motion::{Motion, MotionSettings, MotionState, StepCache};
+use dynamics::motion::{Motion, MotionSettings, MotionState};
 use dynamics::{ContactMode, Hold, Model, Pose, ShaftDof, StaticSolver};
 use input::Schedule;
 
 use support::rings::Level;
-use support::{Case, equilibrium};
+use support::{Case, equilibrium, states_from};
 
 const SMALL: Level = Level::hex8(54, 6, 1, 2);
 /// 15 000 rpm, rad/s.
@@ -41,13 +41,7 @@ fn spinning(mut model: Model, shares: [f64; 2]) -> Model {
 
 fn run(model: &Model, settings: MotionSettings, n: usize) -> Vec<MotionState> {
     let motion = Motion::new(model, settings).unwrap();
-    let mut states = vec![motion.start(&equilibrium(model))];
-    let mut cache = StepCache::default();
-    for _ in 0..n {
-        let next = motion.step(states.last().unwrap(), &mut cache).unwrap().0;
-        states.push(next);
-    }
-    states
+    states_from(&motion, motion.start(&equilibrium(model)), n)
 }
 
 fn assert_ledger_closes(states: &[MotionState]) {

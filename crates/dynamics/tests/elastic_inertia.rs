@@ -11,7 +11,7 @@ use dynamics::interactions::contact_damping::ContactDamping;
 use dynamics::kinematics::Speed;
 use dynamics::model::InertiaLimit;
 use dynamics::modes::ring_modes;
-use dynamics::motion::{Motion, MotionSettings, MotionState, StepCache};
+use dynamics::motion::{Motion, MotionSettings, MotionState};
 use dynamics::{
     Backend, ContactMode, DynamicsError, Effect, Hold, Model, ModesSettings, RingModel, RingSupport, Sectors,
     StaticSolution,
@@ -20,7 +20,7 @@ use ring::first_frequency::{FrequencyBounds, first_frequency, first_frequency_ab
 use ring::statics::StaticSettings;
 use ring::{BodySettings, ElasticBody, Frame, Partner, elastic_body};
 use support::rings::{Level, ring};
-use support::{Case, equilibrium, on_threads};
+use support::{Case, equilibrium, on_threads, states_from};
 
 const SMALL: Level = Level::hex8(54, 6, 1, 2);
 /// A limit that every ring of these tests keeps below.
@@ -164,11 +164,7 @@ fn settings(speed: &Speed) -> MotionSettings {
 
 fn run(model: &Model, start: &StaticSolution, speed: &Speed, n: usize) -> Vec<MotionState> {
     let motion = Motion::new(model, settings(speed)).unwrap();
-    let (mut states, mut cache) = (vec![motion.start(start)], StepCache::default());
-    for _ in 0..n {
-        states.push(motion.step(states.last().unwrap(), &mut cache).unwrap().0);
-    }
-    states
+    states_from(&motion, motion.start(start), n)
 }
 
 /// A turning frame without the load of the undeformed ring.

@@ -9,8 +9,8 @@ use dynamics::model::ShaftInertia;
 use dynamics::motion::{Motion, MotionSettings, MotionState, StepCache};
 use dynamics::{ContactMode, Hold, Model, ShaftDof};
 use ring::Frame;
-use support::Case;
 use support::rings::Level;
+use support::{Case, states_from};
 
 const SMALL: Level = Level::hex8(54, 6, 1, 2);
 /// A ring for very many steps.
@@ -435,12 +435,8 @@ fn a_stiff_ring_moves_as_a_rigid_one() {
     let run = |model: &Model| {
         let settings = MotionSettings::conserving(2e-6, speed.clone());
         let motion = Motion::new(model, settings).unwrap();
-        let mut states = vec![motion.rest([0.0, 0.0, 5e-6, 0.0, 0.0], [0.02, 0.0, 0.0, 1.0, 0.0])];
-        let mut cache = StepCache::default();
-        for _ in 0..150 {
-            states.push(motion.step(states.last().unwrap(), &mut cache).unwrap().0);
-        }
-        states
+        let start = motion.rest([0.0, 0.0, 5e-6, 0.0, 0.0], [0.02, 0.0, 0.0, 1.0, 0.0]);
+        states_from(&motion, start, 150)
     };
     let case = Case {
         free_tilt: true,

@@ -9,7 +9,7 @@ use dynamics::kinematics::Speed;
 use dynamics::motion::{Motion, MotionSettings, MotionState, StepCache};
 use dynamics::{ContactMode, Hold, Model, StaticSolution};
 use support::rings::Level;
-use support::{Case, equilibrium, on_threads};
+use support::{Case, equilibrium, on_threads, states_from};
 
 fn settings(dt: f64) -> MotionSettings {
     MotionSettings::conserving(dt, Speed::constant(0.0))
@@ -37,13 +37,7 @@ fn radial_step(radial: f64) -> (Model, StaticSolution) {
 
 fn run(model: &Model, start: &StaticSolution, settings: MotionSettings, n: usize) -> Vec<MotionState> {
     let motion = Motion::new(model, settings).unwrap();
-    let mut states = vec![motion.start(start)];
-    let mut cache = StepCache::default();
-    for _ in 0..n {
-        let next = motion.step(states.last().unwrap(), &mut cache).unwrap().0;
-        states.push(next);
-    }
-    states
+    states_from(&motion, motion.start(start), n)
 }
 
 /// Wrong: a bearing at rest would start to move by itself. The start is the static equilibrium, to its tolerance.

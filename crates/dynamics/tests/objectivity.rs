@@ -14,11 +14,11 @@ use dynamics::effects::unbalance::Unbalance;
 use dynamics::effects::{AxialForce, Effect, FrameRotation, Gravity, Moment, RadialForce};
 use dynamics::kinematics::Speed;
 use dynamics::model::ShaftInertia;
-use dynamics::motion::{Motion, MotionSettings, MotionState, PatchPlace, StepCache};
+use dynamics::motion::{Motion, MotionSettings, MotionState, PatchPlace};
 use dynamics::{ContactMode, Hold, Model, ShaftDof, StaticSolution};
 use input::Schedule;
 use support::rings::Level;
-use support::{Case, equilibrium};
+use support::{Case, equilibrium, states_from};
 
 const BALLS: usize = 18;
 /// Azimuth of ball 0, rad: nothing lies on an axis.
@@ -231,12 +231,7 @@ fn run(turn: Turn, model: &Model, start: &Displacements, push: [f64; 5]) -> Vec<
         force: 0.0,
     };
     state.places.iter_mut().for_each(|places| places.fill(unloaded));
-    let mut states = vec![motion.with_energies(state)];
-    let mut cache = StepCache::default();
-    for _ in 0..150 {
-        states.push(motion.step(states.last().unwrap(), &mut cache).unwrap().0);
-    }
-    states
+    states_from(&motion, motion.with_energies(state), 150)
 }
 
 fn check_motion(turn: Turn, first: &[MotionState], turned: &[MotionState]) {

@@ -7,11 +7,11 @@ use std::f64::consts::PI;
 use contact::Side;
 use dynamics::effects::{BallCentrifugal, FrameRotation, Gravity, GyroscopicMoment, MomentShares};
 use dynamics::kinematics::{BallSpeeds, Kinematics, RingSpeeds, Rolling, Speed};
-use dynamics::motion::{Motion, MotionSettings, MotionState, StepCache};
+use dynamics::motion::{Motion, MotionSettings, MotionState};
 use dynamics::{ContactMode, Hold, Model, Pose, QuasiStaticMotion, ShaftDof, StaticSolution, StaticSolver};
 use input::Schedule;
 use support::rings::Level;
-use support::{Case, equilibrium, relative};
+use support::{Case, equilibrium, relative, states_from};
 
 const SMALL: Level = Level::hex8(54, 6, 1, 2);
 /// 12 000 rpm, rad/s.
@@ -38,12 +38,7 @@ fn add_frame(model: &mut Model, speeds: &RingSpeeds) {
 
 fn run(model: &Model, start: &StaticSolution, speeds: &RingSpeeds, n: usize) -> Vec<MotionState> {
     let motion = Motion::new(model, MotionSettings::conserving(5e-6, speeds.clone())).unwrap();
-    let mut states = vec![motion.start(start)];
-    let mut cache = StepCache::default();
-    for _ in 0..n {
-        let next = motion.step(states.last().unwrap(), &mut cache).unwrap().0;
-        states.push(next);
-    }
+    let states = states_from(&motion, motion.start(start), n);
     let defect = states.last().unwrap().ledger.relative_defect().abs();
     assert!(defect < 1e-8, "{defect}");
     states

@@ -11,7 +11,7 @@ use dynamics::kinematics::{Kinematics, Speed};
 use dynamics::motion::{Motion, MotionSettings, MotionState, StepCache};
 use dynamics::{ContactMode, Hold, Model};
 use support::rings::Level;
-use support::{Case, equilibrium, relative};
+use support::{Case, equilibrium, relative, states_from};
 
 const SMALL: Level = Level::hex8(54, 6, 1, 2);
 /// 1800 rpm, rad/s.
@@ -31,13 +31,11 @@ fn with_strips(
 
 fn run(model: &Model, dt: f64, duration: f64) -> Vec<MotionState> {
     let motion = Motion::new(model, MotionSettings::conserving(dt, Speed::constant(SPEED))).unwrap();
-    let mut states = vec![motion.start(&equilibrium(model))];
-    let mut cache = StepCache::default();
-    for _ in 0..(duration / dt).round() as usize {
-        let next = motion.step(states.last().unwrap(), &mut cache).unwrap().0;
-        states.push(next);
-    }
-    states
+    states_from(
+        &motion,
+        motion.start(&equilibrium(model)),
+        (duration / dt).round() as usize,
+    )
 }
 
 /// A spall on the outer ring that ball 0 enters 50 us after the start.

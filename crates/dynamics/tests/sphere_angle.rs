@@ -8,10 +8,10 @@ use std::f64::consts::PI;
 use contact::{Meridian, Side};
 use dynamics::effects::BallCentrifugal;
 use dynamics::kinematics::{BallSpeeds, Kinematics, Speed};
-use dynamics::motion::{Motion, MotionSettings, MotionState, StepCache};
+use dynamics::motion::{Motion, MotionSettings, MotionState};
 use dynamics::{ContactMode, Hold, Model};
 use support::rings::Level;
-use support::{Case, equilibrium, on_threads, relative};
+use support::{Case, equilibrium, on_threads, relative, states_from};
 
 /// 20 000 rpm, rad/s.
 const FAST: f64 = 20e3 * PI / 30.0;
@@ -166,18 +166,8 @@ fn fast_balls_yield_by_the_angle_between_their_contacts() {
 }
 
 fn run(model: &Model, start: &Model, dt: f64, n: usize) -> Vec<MotionState> {
-    let settings = MotionSettings {
-        speeds: Speed::constant(FAST).into(),
-        ..MotionSettings::conserving(dt, Speed::constant(FAST))
-    };
-    let motion = Motion::new(model, settings).unwrap();
-    let mut states = vec![motion.start(&equilibrium(start))];
-    let mut cache = StepCache::default();
-    for _ in 0..n {
-        let next = motion.step(states.last().unwrap(), &mut cache).unwrap().0;
-        states.push(next);
-    }
-    states
+    let motion = Motion::new(model, MotionSettings::conserving(dt, Speed::constant(FAST))).unwrap();
+    states_from(&motion, motion.start(&equilibrium(start)), n)
 }
 
 /// Wrong: contacts that turn against each other would make energy. 20 000 rpm, a radial force that comes at once and

@@ -3,13 +3,13 @@
 use dynamics::effects::FrameRotation;
 use dynamics::interactions::contact_damping::ContactDamping;
 use dynamics::kinematics::Speed;
-use dynamics::motion::{Motion, MotionSettings, MotionState, StepCache};
+use dynamics::motion::{Motion, MotionSettings, MotionState};
 use dynamics::{Backend, ContactMode, Hold, Model, StaticSolution};
 use ring::Frame;
 
 use crate::rpm;
 use crate::support::rings::Level;
-use crate::support::{Case, equilibrium};
+use crate::support::{Case, equilibrium, states_from};
 
 /// A bearing whose rings are held like this, that turns with this speed.
 fn turning(hold: Hold, case: Case, level: Level, (speed, frame): (&Speed, Frame)) -> Model {
@@ -25,12 +25,7 @@ fn turning(hold: Hold, case: Case, level: Level, (speed, frame): (&Speed, Frame)
 
 fn run(model: &Model, start: &StaticSolution, settings: MotionSettings, n: usize) -> Vec<MotionState> {
     let motion = Motion::new(model, settings).unwrap();
-    let (mut states, mut cache) = (vec![motion.start(start)], StepCache::default());
-    for _ in 0..n {
-        let next = motion.step(states.last().unwrap(), &mut cache).unwrap().0;
-        states.push(next);
-    }
-    states
+    states_from(&motion, motion.start(start), n)
 }
 
 /// Wrong: harmonics would hold another stress than the sparse matrix, with the rows of a shaft that tilts or without,

@@ -5,6 +5,7 @@
 use contact::{BearingGeometry, HertzContact, LeastSize, Side, SphereCompliance};
 use dynamics::effects::{AxialForce, Effect, Moment, RadialForce};
 use dynamics::model::ShaftInertia;
+use dynamics::motion::{Motion, MotionState, StepCache};
 use dynamics::{ContactMode, ContactSettings, Model, ShaftDof, StaticSolution, StaticSolver, Tolerances};
 use fem::Material;
 use input::Schedule;
@@ -115,6 +116,15 @@ pub fn steel() -> Material {
 /// Static equilibrium of a model.
 pub fn equilibrium(model: &Model) -> StaticSolution {
     StaticSolver::new(model).unwrap().solve(model, None).unwrap()
+}
+
+/// A state and those after it, of `n` steps.
+pub fn states_from(motion: &Motion, start: MotionState, n: usize) -> Vec<MotionState> {
+    let (mut states, mut cache) = (vec![start], StepCache::default());
+    for _ in 0..n {
+        states.push(motion.step(states.last().unwrap(), &mut cache).unwrap().0);
+    }
+    states
 }
 
 /// What is found on a number of threads.

@@ -72,14 +72,7 @@ fn assert_answers(test: &DefiniteTest<'_>, ring: &Ring, keep: Option<&[usize]>, 
 #[test]
 fn a_clamped_ring_is_positive_definite_below_its_lowest_eigenvalue() {
     for (ring, _) in rings() {
-        let bore = ring.mesh.group_nodes("bore");
-        let held = ring.periodicity.section_nodes(&bore).unwrap();
-        let keep: Vec<usize> = (0..ring.periodicity.n_section_nodes())
-            .filter(|node| !held.contains(node))
-            .collect();
-        let free: Vec<usize> = (0..ring.mesh.n_dofs())
-            .filter(|dof| !bore.contains(&(dof / 3)))
-            .collect();
+        let [keep, free] = ring.without_bore();
         let mesh = &ring.mesh;
         let nodes = angular_dissection(&mesh.nodes, &mesh.connectivity, mesh.kind.n_nodes());
         let order = restrict_order(&expand(&nodes, 3), &free);

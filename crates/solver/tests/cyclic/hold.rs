@@ -76,13 +76,8 @@ fn supports(ring: &Ring) -> [usize; 6] {
 #[test]
 fn a_bore_that_follows_five_rigid_dofs_is_a_border() {
     for (ring, _) in rings() {
-        let bore = ring.mesh.group_nodes("bore");
-        let held = ring.periodicity.section_nodes(&bore).unwrap();
-        let keep: Vec<usize> = (0..ring.periodicity.n_section_nodes())
-            .filter(|node| !held.contains(node))
-            .collect();
+        let [keep, free] = ring.without_bore();
         let (n_dofs, shifted) = (ring.mesh.n_dofs(), ring.shifted());
-        let free: Vec<usize> = (0..n_dofs).filter(|dof| !bore.contains(&(dof / 3))).collect();
         // Rigid motions of the bore: translations and the two tilts.
         let modes: Vec<Vec<f64>> = [0, 1, 2, 3, 4]
             .iter()

@@ -72,6 +72,15 @@ impl Ring {
         Ring::with_offsets(mesh, periodicity, half_way.as_deref())
     }
 
+    /// Section nodes and dofs that a clamped bore leaves.
+    pub fn without_bore(&self) -> [Vec<usize>; 2] {
+        let bore = self.mesh.group_nodes("bore");
+        let held = self.periodicity.section_nodes(&bore).unwrap();
+        let nodes = (0..self.periodicity.n_section_nodes()).filter(|node| !held.contains(node));
+        let dofs = (0..self.mesh.n_dofs()).filter(|dof| bore.binary_search(&(dof / 3)).is_err());
+        [nodes.collect(), dofs.collect()]
+    }
+
     pub fn with_offsets(mesh: Mesh, periodicity: Periodicity, half_way: Option<&[bool]>) -> Ring {
         let sector = fem::assemble_sector(&mesh, &periodicity, &steel()).unwrap();
         let couplings = couplings(&sector.couplings);

@@ -22,14 +22,7 @@ fn a_free_ring_with_mass_is_solved_as_by_the_sparse_factor() {
 #[test]
 fn a_clamped_ring_is_solved_as_by_the_sparse_factor() {
     for (ring, symmetry) in rings() {
-        let held = ring.mesh.group_nodes("bore");
-        let held_section = ring.periodicity.section_nodes(&held).unwrap();
-        let keep: Vec<usize> = (0..ring.periodicity.n_section_nodes())
-            .filter(|node| held_section.binary_search(node).is_err())
-            .collect();
-        let free: Vec<usize> = (0..ring.mesh.n_dofs())
-            .filter(|dof| held.binary_search(&(dof / 3)).is_err())
-            .collect();
+        let [keep, free] = ring.without_bore();
         let matrix = ring.stiffness.restricted(&keep);
         let cyclic = ring
             .ring
