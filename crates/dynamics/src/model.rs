@@ -435,6 +435,11 @@ impl Model {
         )
     }
 
+    /// Moment of inertia of a ball about any axis, kg m^2.
+    pub fn ball_moment(&self) -> f64 {
+        self.ball_mass() * self.geometry.ball_diameter.powi(2) / 10.0 * self.moment_factor()
+    }
+
     /// Moment of inertia of a ball over that of a solid one of its mass, (1 - q^5)/(1 - q^3) of a hollow one whose
     /// diameters have the ratio q.
     pub fn moment_factor(&self) -> f64 {

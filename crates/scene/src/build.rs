@@ -47,7 +47,8 @@ pub fn build_model(scene: &Scene) -> Result<(Model, NodeTags), BuildError> {
         material(&scene.materials.balls)?,
         material(&scene.materials.rings)?,
     ];
-    ball_elasticity(scene, &geometry, materials.each_ref().map(elastic))?;
+    let hertz = hertz(scene, &geometry, materials.each_ref().map(elastic));
+    require_wall(scene, geometry.ball_diameter, &hertz)?;
     let [inner, outer] = Side::BOTH;
     let rings = rayon::join(|| ring(scene, &geometry, inner), || ring(scene, &geometry, outer));
     let (inner, inner_tags) = rings.0?.unzip();
@@ -74,7 +75,10 @@ pub fn model_with_rings(scene: &Scene, rings: [Option<Arc<RingModel>>; 2]) -> Re
         material(&scene.materials.rings)?,
         material(&scene.materials.balls)?,
     );
-    let (hertz, sphere) = ball_elasticity(scene, &geometry, [&ball_steel, &ring_steel].map(elastic))?;
+    let elastics = [&ball_steel, &ring_steel].map(elastic);
+    let hertz = hertz(scene, &geometry, elastics);
+    require_wall(scene, geometry.ball_diameter, &hertz)?;
+    let sphere = sphere_compliance(scene, &geometry, elastics[0], &hertz);
     let effects = scene.effects.loads(Setting {
         speeds: &speeds(scene),
         slip: scene.effects.slip(),
@@ -126,19 +130,19 @@ pub fn model_with_rings(scene: &Scene, rings: [Option<Arc<RingModel>>; 2]) -> Re
     Ok(model)
 }
 
-/// Laws of contacts and of the balls between them, of balls and rings of these elasticities.
-fn ball_elasticity(
-    scene: &Scene,
-    geometry: &BearingGeometry,
-    [ball, ring]: [Elastic; 2],
-) -> Result<([HertzContact; 2], SphereCompliance), BuildError> {
+/// Laws of the contacts of balls and rings of these elasticities.
+fn hertz(scene: &Scene, geometry: &BearingGeometry, [ball, ring]: [Elastic; 2]) -> [HertzContact; 2] {
     let given = [scene.contact.inner_stiffness, scene.contact.outer_stiffness];
-    let hertz = Side::BOTH.map(|side| {
+    Side::BOTH.map(|side| {
         let exact = HertzContact::new(geometry, side, ball, ring);
         given[side.index()].map_or(exact, |k| exact.with_stiffness(k))
-    });
-    let (diameter, cavity) = (geometry.ball_diameter, scene.bearing.ball_inner_diameter);
-    let (wall, least) = (0.5 * (diameter - cavity), sphere::least_wall(&hertz));
+    })
+}
+
+/// Fails if the wall of a hollow ball is too thin for its contacts, of balls of this diameter.
+fn require_wall(scene: &Scene, diameter: f64, hertz: &[HertzContact; 2]) -> Result<(), BuildError> {
+    let cavity = scene.bearing.ball_inner_diameter;
+    let (wall, least) = (0.5 * (diameter - cavity), sphere::least_wall(hertz));
     if cavity > 0.0 && wall < least {
         return Err(BuildError::ThinWall {
             path: scene.path.clone(),
@@ -148,11 +152,21 @@ fn ball_elasticity(
             most_mm: 1e3 * (diameter - 2.0 * least),
         });
     }
-    let sphere = match scene.contact.ball {
-        tables::BallElasticity::Sphere => SphereCompliance::of_shell(ball, diameter, cavity, &hertz),
+    Ok(())
+}
+
+/// What balls yield beyond half-spaces.
+fn sphere_compliance(
+    scene: &Scene,
+    geometry: &BearingGeometry,
+    ball: Elastic,
+    hertz: &[HertzContact; 2],
+) -> SphereCompliance {
+    let (diameter, cavity) = (geometry.ball_diameter, scene.bearing.ball_inner_diameter);
+    match scene.contact.ball {
+        tables::BallElasticity::Sphere => SphereCompliance::of_shell(ball, diameter, cavity, hertz),
         tables::BallElasticity::HalfSpace => SphereCompliance::default(),
-    };
-    Ok((hertz, sphere))
+    }
 }
 
 /// How contacts press on rings.

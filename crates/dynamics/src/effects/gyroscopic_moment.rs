@@ -117,7 +117,7 @@ impl table::EffectTable for GyroscopicMomentTable {
             return Vec::new();
         }
         let diameter = case.model.geometry.ball_diameter;
-        let inertia = case.model.ball_mass() * diameter * diameter / 10.0 * case.model.moment_factor();
+        let inertia = case.model.ball_moment();
         let moment = inertia * case.gyroscopic_rate() * case.contact_angle().sin();
         let ratio = 2.0 * moment / (diameter * load);
         let estimate = format!(
@@ -184,7 +184,7 @@ impl GyroscopicMoment {
         let spin = kinematics.spin(&self.speeds, now.time);
         let cage = kinematics.cage_speed(&self.speeds, now.time);
         let pitch = pitch_angle(geometry, now.contact_angle(geometry, ball, Side::Outer));
-        let inertia = model.ball_mass() * geometry.ball_diameter.powi(2) / 10.0 * model.moment_factor();
+        let inertia = model.ball_moment();
         inertia * spin * cage * pitch.sin()
     }
 }
