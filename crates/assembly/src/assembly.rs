@@ -342,6 +342,10 @@ impl AssemblySolver {
             mounts: &mounts,
             scales,
         };
+        let solvers = match rings {
+            SolvedRings::Rigid => &mut self.rigid,
+            SolvedRings::AsTheyAre => &mut self.solvers,
+        };
         let bearings = assembly
             .bearings
             .iter_mut()
@@ -355,18 +359,21 @@ impl AssemblySolver {
                 pose: poses[i],
                 start: start.as_ref().map(|starts| starts[i]),
                 last: None,
+                laps: Laps::default(),
             });
         let mut supports = BearingSupports {
             bearings: bearings.collect(),
-            solvers: match rings {
-                SolvedRings::Rigid => &mut self.rigid,
-                SolvedRings::AsTheyAre => &mut self.solvers,
-            },
+            solvers,
         };
-        let settled = settle(&problem, &mut supports, at)?;
-        let found = supports.bearings.into_iter();
-        let found = found.map(|bearing| bearing.last.expect("every bearing has answered"));
-        Ok((settled, found.collect()))
+        let settled = settle(&problem, &mut supports, at);
+        let mut found = Vec::new();
+        for bearing in supports.bearings {
+            solvers[bearing.solver].timing.merge(&bearing.laps);
+            found.push(bearing.last);
+        }
+        let found = found.into_iter();
+        let found = found.map(|last| last.expect("every bearing has answered"));
+        settled.map(|settled| (settled, found.collect()))
     }
 }
 

@@ -24,6 +24,7 @@ pub mod motion;
 pub mod newton;
 pub mod place;
 pub mod shaft;
+mod side_by_side;
 pub mod stiffness;
 pub mod support;
 pub mod whirl;

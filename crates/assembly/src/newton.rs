@@ -161,21 +161,20 @@ impl Problem<'_> {
         let mut largest = (0..n).fold(f64::MIN_POSITIVE, |m, i| {
             m.max(self.load[i].abs() * self.length(i))
         });
-        let mut answers = Vec::with_capacity(self.mounts.len());
+        let mut asked = Vec::with_capacity(self.mounts.len());
         for (number, mount) in self.mounts.iter().enumerate() {
-            let of_shaft = mount.station.displacement(&q);
-            let own = mount.place.into_bearing(of_shaft);
+            let own = mount.place.into_bearing(mount.station.displacement(&q));
             check_range(mount, supports.range(number), own)?;
-            let answer = supports
-                .answer(number, own)
-                .map_err(AssemblyError::of_bearing(&mount.name))?;
+            asked.push((mount.name.as_str(), own));
+        }
+        let answers = supports.answers(&asked)?;
+        for (mount, answer) in self.mounts.iter().zip(&answers) {
             let load = mount.place.orientation.turned(answer.load);
             mount.station.add_load(load.map(|f| -f), &mut residual);
             largest = largest.max(answer.force);
             for (i, f) in load.iter().enumerate() {
                 largest = largest.max(f.abs() * self.length(i));
             }
-            answers.push(answer);
         }
         let free = (0..n).filter(|&i| self.shaft.held[i].is_none());
         let error = free.fold(0.0f64, |m, i| m.max(residual[i].abs() * self.length(i))) / largest;

@@ -4,6 +4,10 @@ use dynamics::displacements::Displacements;
 use dynamics::statics::ContactColumns;
 use dynamics::stiffness::{N_SHAFT, ShaftMatrix};
 use dynamics::{DynamicsError, Linearisation, Model, Pose, ShaftDof, StaticSolution, StaticSolver};
+use timer::Laps;
+
+use crate::error::AssemblyError;
+use crate::side_by_side::of_each;
 
 /// What answers a displacement, in the frame of what answers.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -18,8 +22,8 @@ pub struct SupportAnswer {
 
 /// What answers displacements of the shaft, by the number of the mount.
 pub trait Supports {
-    /// The load and tangent at a displacement.
-    fn answer(&mut self, mount: usize, at: [f64; N_SHAFT]) -> Result<SupportAnswer, DynamicsError>;
+    /// The load and tangent of every mount, by name, at its displacement; the error of the first that fails.
+    fn answers(&mut self, asked: &[(&str, [f64; N_SHAFT])]) -> Result<Vec<SupportAnswer>, AssemblyError>;
 
     /// Displacement beyond which there is no equilibrium, m; None: any.
     fn range(&self, mount: usize) -> Option<f64>;
@@ -42,14 +46,17 @@ impl LinearSupport {
 }
 
 impl Supports for Vec<LinearSupport> {
-    fn answer(&mut self, mount: usize, at: [f64; N_SHAFT]) -> Result<SupportAnswer, DynamicsError> {
-        let stiffness = self[mount].stiffness;
-        let load: [f64; N_SHAFT] = stiffness.map(|row| row.iter().zip(at).map(|(k, x)| k * x).sum());
-        Ok(SupportAnswer {
-            load,
-            stiffness,
-            force: load[..3].iter().fold(0.0, |m, f| f.abs().max(m)),
-        })
+    fn answers(&mut self, asked: &[(&str, [f64; N_SHAFT])]) -> Result<Vec<SupportAnswer>, AssemblyError> {
+        let answer = |(support, (_, at)): (&LinearSupport, &(&str, [f64; N_SHAFT]))| {
+            let stiffness = support.stiffness;
+            let load: [f64; N_SHAFT] = stiffness.map(|row| row.iter().zip(at).map(|(k, x)| k * x).sum());
+            SupportAnswer {
+                load,
+                stiffness,
+                force: load[..3].iter().fold(0.0, |m, f| f.abs().max(m)),
+            }
+        };
+        Ok(self.iter().zip(asked).map(answer).collect())
     }
 
     fn range(&self, _mount: usize) -> Option<f64> {
@@ -71,27 +78,30 @@ pub struct BearingSupport<'a> {
     pub start: Option<&'a Displacements>,
     /// The last solution, from which the next starts.
     pub last: Option<StaticSolution>,
+    /// Wall time of its answers.
+    pub laps: Laps,
 }
 
 /// Bearings with the factors of their rings.
-pub struct BearingSupports<'a> {
+pub struct BearingSupports<'s, 'a> {
     /// Factors of each type.
-    pub solvers: &'a mut [StaticSolver],
+    pub solvers: &'s [StaticSolver],
     /// The bearings.
     pub bearings: Vec<BearingSupport<'a>>,
 }
 
-impl Supports for BearingSupports<'_> {
-    fn answer(&mut self, mount: usize, at: [f64; N_SHAFT]) -> Result<SupportAnswer, DynamicsError> {
-        let bearing = &mut self.bearings[mount];
-        let solver = &mut self.solvers[bearing.solver];
-        bearing.model.shaft = at.map(ShaftDof::Prescribed);
-        solver.swap_columns(bearing.columns);
-        let last = bearing.last.as_ref().map(|solution| &solution.displacements);
-        let found = solver.solve_from(bearing.model, &bearing.pose, last.or(bearing.start));
-        solver.swap_columns(bearing.columns);
+impl BearingSupport<'_> {
+    /// What it answers, with the factors of its type.
+    fn answer(&mut self, factors: &StaticSolver, at: [f64; N_SHAFT]) -> Result<SupportAnswer, DynamicsError> {
+        self.model.shaft = at.map(ShaftDof::Prescribed);
+        let mut solver = factors.beside(std::mem::take(self.columns));
+        let last = self.last.as_ref().map(|solution| &solution.displacements);
+        let found = solver.solve_from(self.model, &self.pose, last.or(self.start));
+        let (columns, laps) = solver.into_point();
+        *self.columns = columns;
+        self.laps.merge(&laps);
         let solution = found?;
-        let tangent = Linearisation::as_solved(bearing.model, &solution)?.stiffness()?;
+        let tangent = Linearisation::as_solved(self.model, &solution)?.stiffness()?;
         let forces = solution
             .balls
             .iter()
@@ -101,8 +111,21 @@ impl Supports for BearingSupports<'_> {
             stiffness: tangent,
             force: forces.fold(0.0, f64::max),
         };
-        bearing.last = Some(solution);
+        self.last = Some(solution);
         Ok(answer)
+    }
+}
+
+impl Supports for BearingSupports<'_, '_> {
+    fn answers(&mut self, asked: &[(&str, [f64; N_SHAFT])]) -> Result<Vec<SupportAnswer>, AssemblyError> {
+        let solvers = self.solvers;
+        let answer = |(bearing, (name, at)): (&mut BearingSupport<'_>, &(&str, [f64; N_SHAFT]))| {
+            let factors = &solvers[bearing.solver];
+            bearing
+                .answer(factors, *at)
+                .map_err(AssemblyError::of_bearing(name))
+        };
+        of_each(self.bearings.iter_mut().zip(asked), answer)
     }
 
     fn range(&self, mount: usize) -> Option<f64> {

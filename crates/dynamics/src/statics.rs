@@ -162,12 +162,6 @@ impl StaticSolver {
         (self.columns, self.timing)
     }
 
-    /// Exchanges the compliance of the contacts, which is a tangent only, for that of another bearing with the same
-    /// rings.
-    pub fn swap_columns(&mut self, other: &mut ContactColumns) {
-        std::mem::swap(&mut self.columns, other);
-    }
-
     /// Wall time so far, effects among it.
     pub fn laps(&self) -> Laps {
         self.laps_with(&Laps::default())

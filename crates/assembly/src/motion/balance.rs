@@ -5,11 +5,11 @@ use dynamics::motion::held::{HeldAnswer, HeldPart, Holding};
 
 use super::bodies::SharedLoads;
 use super::factors::KeptFactors;
-use super::side_by_side::of_each;
 use super::step::ShaftStep;
 use crate::error::AssemblyError;
 use crate::newton::Mount;
 use crate::shaft::times;
+use crate::side_by_side::of_each;
 
 /// Iterations before a part counts as failed.
 const MOST_ITERATIONS: usize = 40;

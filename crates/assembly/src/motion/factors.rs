@@ -15,12 +15,12 @@ use dense::DenseLu;
 use dynamics::motion::held::HeldPart;
 use dynamics::stiffness::{N_SHAFT, ShaftMatrix};
 
-use super::side_by_side::of_each;
 use super::step::ShaftStep;
 use crate::error::AssemblyError;
 use crate::mixing::dot;
 use crate::newton::Mount;
 use crate::shaft::applied;
+use crate::side_by_side::of_each;
 
 /// The shaft alone over parts of one size at one speed.
 pub struct ShaftAlone {

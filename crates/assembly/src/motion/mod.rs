@@ -24,7 +24,6 @@ mod balance;
 mod bodies;
 mod factors;
 mod ledger;
-mod side_by_side;
 mod step;
 
 use comm::Communicator;
@@ -40,12 +39,12 @@ use dynamics::{DynamicsError, ShaftDof};
 use self::bodies::{BodyJoints, SharedLoads};
 use self::factors::{KeptFactors, ShaftAlone};
 pub use self::ledger::ShaftLedger;
-use self::side_by_side::of_each;
 use self::step::ShaftStep;
 use crate::assembly::{Assembly, AssemblySolution};
 use crate::error::AssemblyError;
 use crate::housing::{HousedTogether, housed_together};
 use crate::newton::Mount;
+use crate::side_by_side::of_each;
 
 /// Rounds for patches and frames before a part counts as failed.
 const MAX_ROUNDS: usize = 60;
