@@ -32,6 +32,7 @@ use dynamics::kinematics::Speed;
 use dynamics::motion::held::{HeldAnswer, HeldPart, Holding};
 use dynamics::motion::{
     EquilibriumRates, Integrator, Motion, MotionSettings, MotionState, PartSpan, StepCache, StepReport,
+    among_threads,
 };
 use dynamics::stiffness::N_SHAFT;
 use dynamics::{DynamicsError, ShaftDof};
@@ -193,12 +194,7 @@ impl<'a> AssemblyMotion<'a> {
         cache
             .bearings
             .resize_with(self.bearings.len(), StepCache::default);
-        match Communicator::world().size() {
-            // Among the threads of the bearings: to hand each of their answers over costs more than the answer.
-            1 => rayon::scope(|_| self.parts(state, cache)),
-            // The main thread alone sends messages.
-            _ => self.parts(state, cache),
-        }
+        among_threads(|| self.parts(state, cache))
     }
 
     /// The parts of a step.

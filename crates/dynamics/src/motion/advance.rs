@@ -11,10 +11,28 @@ use crate::error::DynamicsError;
 /// Share of the accepted error below which the next rung up is tried: two orders of the step, and a margin.
 const RISE: f64 = 1.0 / 16.0;
 
+/// Does it among the threads that share its work. From outside, each of its parts would be handed over to them and
+/// waited for, which takes longer than some. Not where ranks share it as well: the main thread alone sends messages.
+pub fn among_threads<T: Send>(work: impl FnOnce() -> T + Send) -> T {
+    match Communicator::world().size() {
+        1 => rayon::scope(|_| work()),
+        _ => work(),
+    }
+}
+
 impl Motion<'_> {
     /// One step of the full size, in parts where a part fails or is too inaccurate. `cache` has what the step before
     /// has found of it, and then what this one finds of the next; no bit of the result depends on it.
     pub fn step(
+        &self,
+        state: &MotionState,
+        cache: &mut StepCache,
+    ) -> Result<(MotionState, StepReport), DynamicsError> {
+        among_threads(|| self.step_in_parts(state, cache))
+    }
+
+    /// The parts of a step.
+    fn step_in_parts(
         &self,
         state: &MotionState,
         cache: &mut StepCache,

@@ -45,6 +45,7 @@ pub mod state;
 mod substep;
 mod surfaces;
 
+pub use advance::among_threads;
 pub use cache::StepCache;
 pub use cage_state::CageState;
 pub use elastic_inertia::LeftOut;
