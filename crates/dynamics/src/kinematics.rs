@@ -14,7 +14,7 @@ use contact::{BearingGeometry, BySide, Side};
 use input::schedule::piecewise_linear;
 use serde::Deserialize;
 
-use crate::effects::Now;
+use crate::effects::loads::Now;
 use crate::pose::Pose;
 
 /// Speed of a ring as a piecewise linear function of time.

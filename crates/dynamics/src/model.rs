@@ -21,7 +21,7 @@ use serde::Deserialize;
 use timer::SharedLaps;
 
 use crate::balls::BallResult;
-use crate::effects::{FrameTurn, Loads, Now, seen_from};
+use crate::effects::loads::{FrameTurn, Loads, Now, seen_from};
 use crate::error::DynamicsError;
 use crate::interactions::cage::design::Cage;
 use crate::interactions::seat_spring::Seat;

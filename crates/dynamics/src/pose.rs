@@ -6,7 +6,7 @@
 
 use contact::Side;
 
-use crate::effects::Now;
+use crate::effects::loads::Now;
 
 /// Time and angles of an instant; the default is a bearing that has not turned, at time 0.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

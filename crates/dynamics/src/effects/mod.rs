@@ -13,7 +13,7 @@ pub mod fit;
 pub mod frame_rotation;
 pub mod gravity;
 pub mod gyroscopic_moment;
-mod loads;
+pub(crate) mod loads;
 pub mod moment;
 pub mod radial_force;
 pub mod rayleigh_damping;
@@ -32,7 +32,7 @@ pub use frame_rotation::{FrameRotation, static_inertia};
 pub use gravity::Gravity;
 pub use gyroscopic_moment::{GyroscopicMoment, MomentShares};
 pub use loads::{AtEquilibrium, FrameTurn, Loads, Now, RingWeight};
-pub(crate) use loads::{resultant, seen_from, sum_of};
+pub(crate) use loads::{resultant, sum_of};
 
 pub use crate::model::Effect;
 pub use moment::Moment;
