@@ -93,7 +93,8 @@ pub enum DynamicsError {
     /// A free ball that finds no steady rolling in an equilibrium.
     #[error(
         "ball {ball} does not come to roll steadily: moments of {residual:.1e} of the load times the radius stay out \
-         of balance; look at the friction and its curve, or compute motion with [dynamic]"
+         of balance; look at the friction and its curve, or compute a [dynamic] motion that does not begin in \
+         equilibrium, [dynamic.start.given]"
     )]
     NoSteadyRolling {
         /// The ball.

@@ -1,7 +1,8 @@
 //! Films of the contacts, for `balls.csv`, `summary.json` and warnings.
 //!
-//! The surfaces of ball and raceway roll with the speed r omega_R, omega_R the ball's rotation about its own axis
-//! relative to the cage: that of kinematic balls, at the free contact angle. Free balls roll as they turn and slip.
+//! The surface of a ball rolls with the speed r omega_R, omega_R the ball's rotation about its own axis relative to the
+//! cage: that of kinematic balls, at the free contact angle. With the slip ratio s that is 1 - s of the raceway's, and
+//! the film takes the mean of both. Free balls roll as they turn and slip.
 //! Thickness: [`contact::film`]. Films change no gap and no normal force.
 
 use contact::film::{Film, FilmContact, Lubricant};
@@ -20,6 +21,8 @@ pub struct FilmLaw {
     /// None: there is no lambda.
     roughness: Option<Roughness>,
     ball_radius: f64,
+    /// Mean speed of both surfaces of kinematic balls over that of the ball's.
+    means: BySide<f64>,
 }
 
 /// Thinnest film of one raceway.
@@ -48,6 +51,7 @@ impl FilmLaw {
             lubricant: lubrication.lubricant,
             roughness: lubrication.roughness,
             ball_radius: 0.5 * geometry.ball_diameter,
+            means: scene.effects.slip().map(mean_over_ball),
         })
     }
 
@@ -58,7 +62,7 @@ impl FilmLaw {
         let contact = self.contacts[side.index()];
         contact.film(
             self.lubricant,
-            speed.unwrap_or(self.ball_radius * spin),
+            speed.unwrap_or(self.ball_radius * spin * self.means[side.index()]),
             ball.contact(side).force_n,
         )
     }
@@ -106,6 +110,11 @@ impl FilmLaw {
     }
 }
 
+/// Mean speed of both surfaces of a contact over that of the ball's, which lacks this share of the raceway's.
+fn mean_over_ball(slip: f64) -> f64 {
+    (1.0 - 0.5 * slip) / (1.0 - slip)
+}
+
 impl FilmSummary {
     /// What a user should know of a film that does not part the surfaces.
     pub fn warning(&self, side: &str) -> Option<String> {
@@ -122,6 +131,14 @@ impl FilmSummary {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// Wrong: the film of a raceway that slips would take the slower surface alone, or change where nothing slips.
+    #[test]
+    fn the_surfaces_of_a_contact_that_slips_have_a_mean() {
+        assert_eq!(mean_over_ball(0.0), 1.0);
+        // The raceway moves at 1 past the contact, the ball at 0.6.
+        assert!((0.6 * mean_over_ball(0.4) - 0.8).abs() < 1e-15);
+    }
 
     /// Wrong: a film that does not part the surfaces would go unsaid.
     #[test]

@@ -5,6 +5,7 @@
 
 pub mod about;
 pub mod answer;
+pub mod ball_turns;
 pub mod bodies;
 pub mod body_stress;
 pub mod campbell;

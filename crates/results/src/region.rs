@@ -61,6 +61,9 @@ impl Region {
                 range_of_z(mesh, shift)
             ));
         }
+        if found.is_empty() {
+            found.push("rigid rings have none".to_string());
+        }
         if points.iter().chain(&of_body.0).all(|&inside| inside == 0.0) {
             return Err(Failure::User(anyhow!(
                 "[output.region] holds no node: {}; expected a region with at least one of them",

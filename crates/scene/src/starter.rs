@@ -136,11 +136,9 @@ fn find(wanted: &StarterRequest) -> Result<Sketch, String> {
         BearingKind::Angular(_) => (0.88 * PI / half).round(),
         BearingKind::Deep(_) => 1.0 + (195f64.to_radians() / (2.0 * half)).floor(),
     };
+    let size = || format!("{bore} x {outside} x {width} mm");
     Ok(Sketch {
-        name: wanted
-            .designation
-            .clone()
-            .unwrap_or_else(|| format!("{bore} x {outside} x {width} mm")),
+        name: wanted.designation.clone().unwrap_or_else(size),
         bore,
         outside,
         width,
@@ -193,27 +191,35 @@ title = "{name}"
     )
 }
 
-fn table_of_bearing(b: &Sketch) -> String {
-    let line = |key: &str, value: String, note: &str| {
-        let text = format!("{key} = {value}");
-        match note {
-            "" => format!("{text}\n"),
-            note => format!("{text:<37}# {note}\n"),
-        }
-    };
-    let mm = |size: f64| format!("\"{size} mm\"");
-    let place = match b.kind {
+/// A key with its value, and a note where there is one.
+fn line(key: &str, value: String, note: &str) -> String {
+    let text = format!("{key} = {value}");
+    match note {
+        "" => format!("{text}\n"),
+        note => format!("{text:<37}# {note}\n"),
+    }
+}
+
+fn angle_or_clearance(b: &Sketch) -> String {
+    match b.kind {
         BearingKind::Angular(degrees) => line(
             "contact_angle",
             format!("\"{degrees} deg\""),
             &format!("free of load: {}", b.angle_note),
         ),
-        BearingKind::Deep(clearance) => line(
-            "radial_clearance",
-            format!("\"{} um\"", ten_digits(1e3 * clearance)),
-            &format!("from one extreme to the other: {}", b.angle_note),
-        ),
-    };
+        BearingKind::Deep(clearance) => {
+            // With much clearance a ball right under the load carries alone, and the shaft is free across it.
+            let half_a_pitch = format!("\"{} deg\"", ten_digits(180.0 / b.balls.size));
+            let note = format!("from one extreme to the other: {}", b.angle_note);
+            let clearance = format!("\"{} um\"", ten_digits(1e3 * clearance));
+            let two = "two balls share a load along +x";
+            line("radial_clearance", clearance, &note) + &line("first_ball_azimuth", half_a_pitch, two)
+        }
+    }
+}
+
+fn table_of_bearing(b: &Sketch) -> String {
+    let mm = |size: f64| format!("\"{size} mm\"");
     [
         "[bearing]\n".to_string(),
         line("bore_diameter", mm(b.bore), "d"),
@@ -226,7 +232,7 @@ fn table_of_bearing(b: &Sketch) -> String {
             mm(b.pitch.size),
             &format!("circle of the ball centres: {}", b.pitch.note),
         ),
-        place,
+        angle_or_clearance(b),
         line(
             "inner_curvature_ratio",
             "0.52".into(),

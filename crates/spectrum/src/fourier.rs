@@ -100,6 +100,11 @@ fn hann(n: usize) -> Vec<f64> {
 }
 
 impl LineSpectrum {
+    /// The largest frequency.
+    pub fn highest(&self) -> f64 {
+        self.resolution * (self.values.len() - 1) as f64
+    }
+
     /// Frequency, Hz, and value of the largest line within two resolutions of a frequency; 0 Hz is none.
     pub fn peak_near(&self, frequency: f64) -> [f64; 2] {
         let place = frequency / self.resolution;

@@ -383,10 +383,11 @@ fn say(dir: &Path, named: &Titled, marks: &[Line]) {
         named.spectrum.resolution,
         named.column
     ));
+    let shown = (named.spectrum.resolution, named.spectrum.highest());
     for line in marks {
         let at = |name: &str, place: f64| {
             let [frequency, value] = named.spectrum.peak_near(place);
-            let doubt = match line.is_resolved(place, marks, named.spectrum.resolution) {
+            let doubt = match line.is_resolved(place, marks, shown) {
                 true => "",
                 false => "; not resolved",
             };

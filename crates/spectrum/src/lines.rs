@@ -14,6 +14,7 @@ use std::path::Path;
 
 use anyhow::{Context, anyhow, ensure};
 use contact::Side;
+use results::ball_turns::BallTurns;
 use results::table::Table;
 use scene::Scene;
 
@@ -51,14 +52,16 @@ impl Line {
 }
 
 impl Line {
-    /// Whether a record shows a place of this line, itself or a sideband, apart from frequency 0 and from the other
-    /// lines of `all`, and from the line itself, by two resolutions: so wide is a peak under the window of Hann.
-    pub fn is_resolved(&self, place: f64, all: &[Line], resolution: f64) -> bool {
+    /// Whether a record shows a place of this line, itself or a sideband, apart from the ends of its frequencies, 0 and
+    /// `highest`, from the other lines of `all`, and from the line itself, by two resolutions: so wide is a peak under
+    /// the window of Hann.
+    pub fn is_resolved(&self, place: f64, all: &[Line], (resolution, highest): (f64, f64)) -> bool {
         let lines = all.iter().map(|line| line.frequency).chain([0.0]);
         let others = lines.filter(|line| *line != place);
         others
             .map(|line| (line - place).abs())
             .all(|off| off >= 2.0 * resolution)
+            && place + 2.0 * resolution <= highest
             && (self.sidebands == 0.0 || self.sidebands >= 2.0 * resolution)
     }
 }
@@ -71,11 +74,7 @@ pub fn lines(dir: &Path, scene: &Scene, (from, to): (f64, f64)) -> anyhow::Resul
             dir.display()
         )
     })?;
-    let (times, balls, azimuths) = (
-        table.column("time_s")?,
-        table.column("ball")?,
-        table.column("azimuth_rad")?,
-    );
+    let (times, balls) = (table.column("time_s")?, table.column("ball")?);
     let rows: Vec<usize> = (0..table.n_rows())
         .filter(|&row| balls[row] == 0.0 && (from..=to).contains(&times[row]))
         .collect();
@@ -84,12 +83,10 @@ pub fn lines(dir: &Path, scene: &Scene, (from, to): (f64, f64)) -> anyhow::Resul
         "{} has fewer than two steps from {from} s to {to} s",
         dir.join("balls.csv").display()
     );
-    let turns = rows.windows(2).map(|pair| {
-        let turn = azimuths[pair[1]] - azimuths[pair[0]];
-        turn - TAU * (turn / TAU).round()
-    });
+    let turns = BallTurns::new(&table, scene)?;
+    let turned: f64 = rows.windows(2).map(|pair| turns.between(pair[0], pair[1])).sum();
     let duration = times[rows[rows.len() - 1]] - times[rows[0]];
-    let cage = turns.sum::<f64>() / (TAU * duration);
+    let cage = turned / (TAU * duration);
     let speeds = scene.speed.as_ref();
     let of_ring = |side: Side| {
         speeds.map_or(0.0, |speeds| {
@@ -214,13 +211,15 @@ mod tests {
         let resolved = |resolution: f64| {
             let found = all
                 .iter()
-                .map(|line| line.is_resolved(line.frequency, &all, resolution));
+                .map(|line| line.is_resolved(line.frequency, &all, (resolution, 500.0)));
             found.collect::<Vec<_>>()
         };
         assert_eq!(resolved(5.0), [true; 4]);
         assert_eq!(resolved(8.0), [true, true, false, true]);
         assert_eq!(resolved(12.0), [false, false, false, true]);
         assert_eq!(resolved(16.0), [false, false, false, false]);
-        assert!(all[3].is_resolved(276.0, &all, 8.0) && !all[3].is_resolved(276.0, &all, 16.0));
+        let side = |resolution: f64, highest: f64| all[3].is_resolved(276.0, &all, (resolution, highest));
+        assert!(side(8.0, 500.0) && !side(16.0, 500.0));
+        assert!(side(8.0, 292.0) && !side(8.0, 291.0), "beyond what rows tell");
     }
 }

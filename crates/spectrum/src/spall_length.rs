@@ -8,6 +8,7 @@ use clap::Args;
 use comm::print;
 use contact::Side;
 use contact::surface::sag;
+use results::ball_turns::BallTurns;
 use results::failure::Failure;
 use results::integrity::warn_of_doubts;
 use results::table::Table;
@@ -44,7 +45,7 @@ pub fn spall_length(command: &SpallLengthCommand) -> Result<(), Failure> {
     let scene = scene_of(dir)?;
     let side = Side::BOTH.into_iter().find(|side| side.name() == command.ring);
     let side = side.expect("the command line knows both names");
-    let record = record(dir)?;
+    let record = record(dir, &scene)?;
     let known = known(&scene, side, command.mass, &record)?;
     ensure_resolved(&record, &known)?;
     warn_of_doubts(dir)?;
@@ -134,7 +135,7 @@ fn ensure_resolved(record: &ShaftRecord, known: &PassedBearing) -> anyhow::Resul
 }
 
 /// The motion of shaft and balls in `dir`.
-fn record(dir: &Path) -> anyhow::Result<ShaftRecord> {
+fn record(dir: &Path, scene: &Scene) -> anyhow::Result<ShaftRecord> {
     let read = |name: &str| {
         Table::read(dir, name)?.with_context(|| {
             format!(
@@ -153,6 +154,7 @@ fn record(dir: &Path) -> anyhow::Result<ShaftRecord> {
     };
     let (forces, approaches) = (of_sides("force_n")?, of_sides("approach_m")?);
     let (angles, azimuths) = (of_sides("contact_angle_rad")?, balls.column("azimuth_rad")?);
+    let turns = BallTurns::new(&balls, scene)?;
     let n = balls.n_rows() / times.len();
     ensure!(
         n > 0 && n * times.len() == balls.n_rows() && times.len() > 2,
@@ -169,8 +171,8 @@ fn record(dir: &Path) -> anyhow::Result<ShaftRecord> {
     let mut steps: Vec<Vec<BallAt>> = rows.chunks(n).map(<[BallAt]>::to_vec).collect();
     for step in 1..steps.len() {
         for ball in 0..n {
-            let turn = steps[step][ball].azimuth - steps[step - 1][ball].azimuth;
-            steps[step][ball].azimuth -= TAU * (turn / TAU).round();
+            let turn = turns.between(n * (step - 1) + ball, n * step + ball);
+            steps[step][ball].azimuth = steps[step - 1][ball].azimuth + turn;
         }
     }
     Ok(ShaftRecord {

@@ -16,7 +16,7 @@ use crate::error::DynamicsError;
 use crate::kinematics::BothRings;
 use crate::model::{Effect, Model};
 
-const EXAMPLE: &str = r#"[effects.ball_drag]             # needs [balls] with motion = "free", and [dynamic]
+const EXAMPLE: &str = r#"[effects.ball_drag]             # needs [balls] with motion = "free"
 coefficient = 0.5               # drag coefficient of a ball, on its cross-section
 density = "20 kg/m3"            # effective density of oil and air in the bearing
 "#;
