@@ -19,16 +19,18 @@
 //!
 //! The shaft's own inertia is that of its dofs in space. Of its spin there is the moment - d/dt [ I_p W J t ].
 //!
-//! Velocities are means over the step: no state of its own, and of second order with the conserving scheme. Bodies are
-//! taken as bodies of revolution: the unbalance of a ring with a cut comes with `frame_rotation`. Forces act on the
-//! shaft, not over the ring. What its elasticity makes of that is (W / first natural frequency w_1)^2 of them; the
-//! shaft of a ring that touches nothing feels it as a negative stiffness of the size m W^4 / w_1^2, which contacts
-//! exceed by far. Where the stress of the turning ring stiffens it ([`ring::expansion`]), that holds W^2 I_p t / 2
-//! against a tilt of its own, and of its elastic part too; only the pull of a clamped bore is taken out here. Else the
-//! elastic part of a tilt lacks it: 2e-5 of the tilt of a 7010C with a clamped bore at 40 000 rpm.
+//! Velocities are those of [`ShaftStart`]: no state of its own, and of second order. Bodies are taken as bodies of
+//! revolution: the unbalance of a ring with a cut comes with `frame_rotation`. Forces act on the shaft, not over the
+//! ring. What its elasticity makes of that is (W / first natural frequency w_1)^2 of them; the shaft of a ring that
+//! touches nothing feels it as a negative stiffness of the size m W^4 / w_1^2, which contacts exceed by far. Where the
+//! stress of the turning ring stiffens it ([`ring::expansion`]), that holds W^2 I_p t / 2 against a tilt of its own,
+//! and of its elastic part too; only the pull of a clamped bore is taken out here. Else the elastic part of a tilt
+//! lacks it: 2e-5 of the tilt of a 7010C with a clamped bore at 40 000 rpm.
 
-use ring::StepScheme;
+use ring::Integrator;
 use ring::rigid::{RigidInertia, across};
+
+use super::shaft_course::{ShaftCourse, ShaftStart};
 
 use crate::frame::turn;
 
@@ -54,10 +56,8 @@ pub struct FrameInertia {
     pub takes: StepTakes,
     /// Moment that the stress of the ring at unit speed holds against a tilt in that step, N m s^2.
     pub tilt_by_stress: f64,
-    /// Displacement of the shaft in space at the start, m and rad.
-    pub start: [f64; 5],
-    /// The step.
-    pub scheme: StepScheme,
+    /// What the shaft starts with, in space.
+    pub shaft: ShaftStart,
     /// Angle of the frame at the start, at the weighted time and at the end of the step, rad.
     pub angles: [f64; 3],
     /// Speed of the frame at the start and at the end, rad/s.
@@ -69,24 +69,34 @@ impl FrameInertia {
     /// a constant.
     pub fn forces(&self, q: [f64; 5]) -> [f64; 5] {
         let [from, at, to] = self.angles;
-        let (start, end) = (turn(self.start, -from), turn(q, -to));
-        let dt = self.scheme.dt;
+        let (start, end) = (turn(self.shaft.start[0], -from), turn(q, -to));
+        let dt = self.shaft.scheme.dt;
         let pairs = [0, 1, 2, 3, 4].map(|i| [start[i], end[i]]);
-        let (x, v) = (
-            pairs.map(|pair| self.weighted(pair)),
-            pairs.map(|[a, b]| (b - a) / dt),
-        );
+        let course = self.shaft.course(q);
+        let v = match self.shaft.takes_means() {
+            true => pairs.map(|[a, b]| (b - a) / dt),
+            false => self.seen_from_frame(&course),
+        };
+        let x = pairs.map(|pair| self.weighted(pair));
         let mut forces = turn(self.in_frame(x, v), at);
-        let spin = self.shaft_spin(q);
+        let spin = self.shaft_spin(q, &course);
         (forces[3], forces[4]) = (forces[3] + spin[0], forces[4] + spin[1]);
         forces
     }
 
-    /// Moment about x and y that the spin of the shaft asks for, N m: the change of its momentum over the step.
-    fn shaft_spin(&self, q: [f64; 5]) -> [f64; 2] {
-        let rate = |i: usize| {
-            let change = self.speeds[1] * q[i] - self.speeds[0] * self.start[i];
-            self.shaft_polar * change / self.scheme.dt
+    /// Velocity in the frame at the weighted time of a course in space: v - W J x.
+    fn seen_from_frame(&self, [x, v, _]: &ShaftCourse) -> [f64; 5] {
+        let (speed, jx) = (self.weighted(self.speeds), across(*x));
+        turn([0, 1, 2, 3, 4].map(|i| v[i] - speed * jx[i]), -self.angles[1])
+    }
+
+    /// Moment about x and y that the spin of the shaft asks for, N m: the change of its momentum, over the step or at
+    /// the weighted time.
+    fn shaft_spin(&self, q: [f64; 5], [x, v, _]: &ShaftCourse) -> [f64; 2] {
+        let ([from, to], dt) = (self.speeds, self.shaft.scheme.dt);
+        let rate = |i: usize| match self.shaft.takes_means() {
+            true => self.shaft_polar * (to * q[i] - from * self.shaft.start[0][i]) / dt,
+            false => self.shaft_polar * (self.weighted(self.speeds) * v[i] + (to - from) / dt * x[i]),
         };
         [rate(4), -rate(3)]
     }
@@ -102,16 +112,27 @@ impl FrameInertia {
         })
     }
 
-    /// Work of the forces on the shaft over the step, J.
-    pub fn work(&self, q: [f64; 5]) -> f64 {
-        let forces = self.forces(q);
-        (0..5).map(|i| forces[i] * (q[i] - self.start[i])).sum()
+    /// Work of the forces on the shaft over the step, J, with velocities that are means, and what those of the weighted
+    /// time add to it: the scheme's own.
+    pub fn works(&self, q: [f64; 5]) -> [f64; 2] {
+        let work = |of: &FrameInertia| -> f64 {
+            let forces = of.forces(q);
+            (0..5).map(|i| forces[i] * (q[i] - of.shaft.start[0][i])).sum()
+        };
+        if self.shaft.takes_means() {
+            return [work(self), 0.0];
+        }
+        let ([from, _, to], mut means) = (self.angles, *self);
+        means.angles[1] = 0.5 * (from + to);
+        means.shaft.scheme.integrator = Integrator::average_acceleration();
+        let mean = work(&means);
+        [mean, work(self) - mean]
     }
 
     /// The forces in the frame at the displacement `x` and the velocity `v` seen from it.
     fn in_frame(&self, x: [f64; 5], v: [f64; 5]) -> [f64; 5] {
         let speed = self.weighted(self.speeds);
-        let rate = (self.speeds[1] - self.speeds[0]) / self.scheme.dt;
+        let rate = (self.speeds[1] - self.speeds[0]) / self.shaft.scheme.dt;
         let jx = across(x);
         let of_linear = |polar: f64, by_stress: f64| {
             let moment = |i: usize| {
@@ -132,7 +153,7 @@ impl FrameInertia {
     }
 
     fn weighted(&self, [start, end]: [f64; 2]) -> f64 {
-        let s = self.scheme.integrator.alpha_f;
+        let s = self.shaft.scheme.integrator.alpha_f;
         s * start + (1.0 - s) * end
     }
 }
@@ -140,7 +161,7 @@ impl FrameInertia {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use ring::Integrator;
+    use ring::StepScheme;
 
     const RING: RigidInertia = RigidInertia {
         mass: 0.3,
@@ -170,19 +191,19 @@ mod tests {
         900.0 * t + 0.5 * GROWTH * t * t
     }
 
-    fn over(dt: f64, (takes, tilt_by_stress): (StepTakes, f64)) -> FrameInertia {
+    fn over(dt: f64, (takes, tilt_by_stress): (StepTakes, f64), integrator: Integrator) -> FrameInertia {
         FrameInertia {
             inertia: RING,
             shaft_polar: 1e-4,
             body_polar: 0.0,
             takes,
             tilt_by_stress,
-            start: motion(0.0)[0],
-            scheme: StepScheme {
-                integrator: Integrator::average_acceleration(),
-                dt,
+            shaft: ShaftStart {
+                start: motion(0.0),
+                remembers: [true; 5],
+                scheme: StepScheme { integrator, dt },
             },
-            angles: [0.0, 0.5 * dt, dt].map(angle),
+            angles: [0.0, (1.0 - integrator.alpha_f) * dt, dt].map(angle),
             speeds: [speed(0.0), speed(dt)],
         }
     }
@@ -224,32 +245,53 @@ mod tests {
         forces
     }
 
-    /// Wrong: Coriolis, centrifugal, Euler or gyroscopic terms have a wrong sign or size. Against the rotor's equations
-    /// in space, at the middle of a step: second order in its size.
+    /// Wrong: Coriolis, centrifugal, Euler or gyroscopic terms have a wrong sign or size, or belong to another time
+    /// than that at which a scheme balances. Against the equations in space at that time: second order in the step.
+    /// A shaft without inertia of its own remembers the mean velocity of the step before.
     #[test]
     fn the_forces_are_those_of_the_rotors_equations() {
-        for takes in [
+        let all_takes = [
             (StepTakes::Still, 0.0),
             (StepTakes::Turning, 0.0),
             (StepTakes::Turning, 1e-4),
-        ] {
+        ];
+        let schemes = [
+            Integrator::average_acceleration(),
+            Integrator::chung_hulbert(0.5),
+            Integrator::hht(0.3),
+        ];
+        let cases = all_takes.into_iter().flat_map(|takes| {
+            schemes
+                .into_iter()
+                .flat_map(move |scheme| [true, false].map(|remembers| (takes, scheme, remembers)))
+        });
+        for (takes, scheme, remembers) in cases {
             let error = |dt: f64| {
-                let found = over(dt, takes).forces(motion(dt)[0]);
-                let exact = expected(0.5 * dt, takes);
+                let mut of = over(dt, takes, scheme);
+                if !remembers {
+                    let before = motion(-dt)[0];
+                    of.shaft.remembers = [false; 5];
+                    of.shaft.start[1] = [0, 1, 2, 3, 4].map(|i| (of.shaft.start[0][i] - before[i]) / dt);
+                }
+                let found = of.forces(motion(dt)[0]);
+                let exact = expected((1.0 - scheme.alpha_f) * dt, takes);
                 (0..5).map(|i| (found[i] - exact[i]).abs()).fold(0.0, f64::max)
             };
             let size = expected(0.0, takes).iter().fold(0.0, |m: f64, x| m.max(x.abs()));
             let (coarse, fine) = (error(2e-5), error(1e-5));
-            assert!(coarse < 1e-3 * size, "{coarse} of {size}");
+            assert!(coarse < 1e-3 * size, "{scheme:?} {coarse} of {size}");
             let order = (coarse / fine).log2();
-            assert!((order - 2.0).abs() < 0.1, "order {order}");
+            assert!(
+                (order - 2.0).abs() < 0.1,
+                "{scheme:?} {takes:?} {remembers} order {order}"
+            );
         }
     }
 
     /// Wrong: Newton's tangent is not the derivative.
     #[test]
     fn the_slopes_are_the_derivative() {
-        let of = over(1e-5, (StepTakes::Still, 0.0));
+        let of = over(1e-5, (StepTakes::Still, 0.0), Integrator::average_acceleration());
         let [from, to] = [motion(0.0)[0], motion(1e-5)[0]];
         let (a, b, slopes) = (of.forces(from), of.forces(to), of.slopes());
         for i in 0..5 {

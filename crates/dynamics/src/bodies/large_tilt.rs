@@ -17,12 +17,14 @@
 //!
 //! because N is across n, and n . (dn/dp_x x dn/dp_y) = s. The drive has the moment I_p W' / cos t about z, where the
 //! shaft is coupled. The linear part of all that is in the dofs of the shaft, the steps of the rings and
-//! [`super::FrameInertia`]; the rest is here. It is taken at the weighted time of the step with mean velocities: of
-//! second order and reversible in time with the conserving scheme. A shaft without inertia of its own remembers mean
+//! [`super::FrameInertia`]; the rest is here. It is taken at the weighted time of the step ([`ShaftStart`]): of
+//! second order, and reversible in time with the conserving scheme. A shaft without inertia of its own remembers mean
 //! velocities alone, so that its accelerations lag by half a step.
 
 use ring::StepScheme;
 use ring::rigid::RigidInertia;
+
+use super::shaft_course::{ShaftCourse, ShaftStart};
 
 /// Steps of the difference quotients of the forces: displacements in m, tilts in rad.
 const DIFFERENCE: f64 = 1e-6;
@@ -47,34 +49,27 @@ const fn odd_factorials() -> [f64; TERMS + 2] {
 pub struct LargeTilt {
     /// Of all that moves with the shaft, about the origin of its tilts.
     pub inertia: RigidInertia,
-    /// Displacement, velocity and acceleration of the shaft at the start.
-    pub start: [[f64; 5]; 3],
-    /// Which dofs remember more than a mean velocity: those with inertia of their own.
-    pub remembers: [bool; 5],
-    /// The step.
-    pub scheme: StepScheme,
+    /// What the shaft starts with.
+    pub shaft: ShaftStart,
     /// Speeds of the shaft at the start and at the end, rad/s.
     pub speeds: [f64; 2],
 }
 
-/// Displacement, velocity and acceleration in a step.
-type ShaftCourse = [[f64; 5]; 3];
-
 impl LargeTilt {
     /// Forces and moments on the shaft that the inertia asks for when it ends at `q`, N and N m.
     pub fn forces(&self, q: [f64; 5]) -> [f64; 5] {
-        let alpha = self.scheme.integrator.alpha_f;
+        let StepScheme { integrator, dt } = self.shaft.scheme;
         let [start, end] = self.speeds;
-        let speed = alpha * start + (1.0 - alpha) * end;
-        let rate = (end - start) / self.scheme.dt;
-        beyond_linear(&self.inertia, [speed, rate], &self.course(q))
+        let speed = integrator.alpha_f * start + (1.0 - integrator.alpha_f) * end;
+        let rate = (end - start) / dt;
+        beyond_linear(&self.inertia, [speed, rate], &self.shaft.course(q))
     }
 
     /// Growth of the forces with `q` at the start, by columns.
     pub fn slopes(&self) -> [[f64; 5]; 5] {
         [0, 1, 2, 3, 4].map(|k| {
             let at = |sign: f64| {
-                let mut q = self.start[0];
+                let mut q = self.shaft.start[0];
                 q[k] += sign * DIFFERENCE;
                 self.forces(q)
             };
@@ -86,28 +81,7 @@ impl LargeTilt {
     /// Work of the forces on the shaft over the step, J.
     pub fn work(&self, q: [f64; 5]) -> f64 {
         let forces = self.forces(q);
-        (0..5).map(|i| forces[i] * (q[i] - self.start[0][i])).sum()
-    }
-
-    /// At the weighted time of the step that ends at `q`.
-    fn course(&self, q: [f64; 5]) -> ShaftCourse {
-        let StepScheme { integrator, dt } = self.scheme;
-        let alpha = integrator.alpha_f;
-        let [x, v, a] = self.start;
-        let acceleration = |i: usize| {
-            let change = q[i] - x[i];
-            if self.remembers[i] {
-                integrator.weighted_acceleration(dt, change, v[i], a[i])[0]
-            } else {
-                (change / dt - v[i]) / dt
-            }
-        };
-        let all = [0, 1, 2, 3, 4];
-        [
-            all.map(|i| alpha * x[i] + (1.0 - alpha) * q[i]),
-            all.map(|i| (q[i] - x[i]) / dt),
-            all.map(acceleration),
-        ]
+        (0..5).map(|i| forces[i] * (q[i] - self.shaft.start[0][i])).sum()
     }
 }
 
@@ -307,11 +281,13 @@ mod tests {
         let remembered = [0, 1, 2, 3, 4].map(|i| v[i] - dt * dt / 12.0 * (after[i] - before[i]) / 2e-6);
         LargeTilt {
             inertia: ROTOR,
-            start: [x, remembered, a],
-            remembers: [true; 5],
-            scheme: StepScheme {
-                integrator: Integrator::average_acceleration(),
-                dt,
+            shaft: ShaftStart {
+                start: [x, remembered, a],
+                remembers: [true; 5],
+                scheme: StepScheme {
+                    integrator: Integrator::average_acceleration(),
+                    dt,
+                },
             },
             speeds: [start, start + dt].map(|t| SPEED + GROWTH * t),
         }
@@ -343,7 +319,7 @@ mod tests {
         let mut at = over(1e-5, 7e-4);
         let small = |x: [f64; 5]| x.map(|x| 1e-5 * x);
         let large = at.forces(motion(7e-4 + 5e-6)[0]);
-        at.start = at.start.map(small);
+        at.shaft.start = at.shaft.start.map(small);
         let found = at.forces(small(motion(7e-4 + 5e-6)[0]));
         for (found, large) in found.iter().zip(large) {
             assert!(found.abs() < 1e-9 * large.abs(), "{found:e} of {large:e}");
@@ -355,9 +331,9 @@ mod tests {
     fn the_slopes_are_the_derivative() {
         let of = over(1e-5, 7e-4);
         let slopes = of.slopes();
-        let still = of.forces(of.start[0]);
+        let still = of.forces(of.shaft.start[0]);
         for k in 0..5 {
-            let mut q = of.start[0];
+            let mut q = of.shaft.start[0];
             q[k] += 1e-8;
             let moved = of.forces(q);
             for i in 0..5 {

@@ -205,7 +205,9 @@ fn finish_shaft(next: &mut MotionState, parts: &BearingParts, solution: &StepSol
         next.ledger.imposed_work += reactions[dof] * change;
     }
     if let Some(turning) = &parts.shaft.turning {
-        next.ledger.frame_work -= turning.work(solution.shaft);
+        let [work, of_scheme] = turning.works(solution.shaft);
+        next.ledger.frame_work -= work;
+        next.ledger.numerical_loss += of_scheme;
     }
     if let Some(large) = &parts.shaft.large_tilt {
         next.ledger.frame_work -= large.work(solution.shaft);

@@ -11,7 +11,7 @@ use super::span::PartSpan;
 use super::state::MotionState;
 use super::state::PatchPlace;
 use crate::bearing::{BearingParts, ContactList, SeatStep};
-use crate::bodies::{FlatBody, FrameInertia, Inertia, LargeTilt, Name, StepTakes};
+use crate::bodies::{FlatBody, FrameInertia, Inertia, LargeTilt, Name, ShaftStart, StepTakes};
 use crate::effects::{Loads, Now};
 use crate::error::DynamicsError;
 use crate::interactions::discrete_gradient::MeanForce;
@@ -188,16 +188,22 @@ impl Motion<'_> {
         shaft
     }
 
-    /// Inertia of what moves with the shaft beyond that of small tilts.
-    fn large_tilt(&self, state: &MotionState, span: PartSpan) -> Option<LargeTilt> {
-        Some(LargeTilt {
-            inertia: self.tilting?,
+    fn shaft_start(&self, state: &MotionState, span: PartSpan) -> ShaftStart {
+        ShaftStart {
             start: [state.shaft, state.shaft_velocity, state.shaft_acceleration],
             remembers: self.model.shaft_masses().map(|mass| mass > 0.0),
             scheme: StepScheme {
                 integrator: self.settings.integrator,
                 dt: span.dt,
             },
+        }
+    }
+
+    /// Inertia of what moves with the shaft beyond that of small tilts.
+    fn large_tilt(&self, state: &MotionState, span: PartSpan) -> Option<LargeTilt> {
+        Some(LargeTilt {
+            inertia: self.tilting?,
+            shaft: self.shaft_start(state, span),
             speeds: [0.0, 1.0].map(|share| self.settings.speeds.inner.at(span.at(share))),
         })
     }
@@ -217,11 +223,7 @@ impl Motion<'_> {
             } else {
                 StepTakes::Still
             },
-            start: state.shaft,
-            scheme: StepScheme {
-                integrator,
-                dt: span.dt,
-            },
+            shaft: self.shaft_start(state, span),
             angles: [0.0, 1.0 - integrator.alpha_f, 1.0].map(|share| self.frame_angle(inner, span.at(share))),
             speeds: [0.0, 1.0].map(|share| self.settings.speeds.inner.at(span.at(share))),
         })

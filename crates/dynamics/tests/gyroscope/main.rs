@@ -1,5 +1,7 @@
 //! A flexible ring that turns and is not held by any contact: the laws of a free gyroscope.
 
+mod schemes;
+#[path = "../support/mod.rs"]
 mod support;
 
 use contact::Side;
