@@ -178,23 +178,17 @@ impl FinishedRun {
         let forces = Side::BOTH.map(|side| self.table.column(&format!("{}_force_n", side.name())));
         let [inner, outer] = forces;
         let (inner, outer) = (inner?, outer?);
-        let start = rolling.pose(times[0]).now.cage_angle;
-        let mut history = History::default();
+        let (mut history, mut cage_angles) = (History::default(), Vec::new());
         for rows in self.starts.windows(2).map(|w| w[0]..w[1]) {
-            let time = times[rows.start];
-            let pose = rolling.pose(time);
+            let pose = rolling.pose(times[rows.start]);
             history.ring_angles.push(pose.ring_angles);
-            // The table has azimuths from 0 to a turn; the cage says which turn.
-            let expected = |ball: usize| azimuths[ball] + pose.now.cage_angle - start;
-            let unwrapped = rows.clone().enumerate().map(|(ball, row)| {
-                let off = expected(ball) - azimuths[row];
-                azimuths[row] + TAU * (off / TAU).round()
-            });
-            history.azimuths.push(unwrapped.collect());
+            cage_angles.push(pose.now.cage_angle);
+            history.azimuths.push(azimuths[rows.clone()].to_vec());
             history
                 .forces
                 .push(rows.map(|row| [inner[row], outer[row]]).collect());
         }
+        history.join_azimuths(&cage_angles);
         Ok(history)
     }
 
