@@ -216,6 +216,47 @@ fn balls_that_lag_by_turns_keep_their_own_way() {
     }
 }
 
+/// A history of 40 turns of the inner ring whose rows lie so many ball pitches of the cage apart.
+fn sparse(pitches: f64, force: impl Fn(f64, usize) -> f64) -> History {
+    let step = pitches * TAU / BALLS as f64 / NINTH.cage;
+    let n = (40.0 * TAU / step) as usize;
+    let angles: Vec<BothRings> = (0..=n).map(|row| [step * row as f64, 0.0]).collect();
+    NINTH.history(&angles, force)
+}
+
+/// Wrong: rows that lie pitches apart would cut the peaks of forces off, and lives come out up to twice as long. The
+/// mean damage is that of the rows at any distance; on the ring that stands it spreads, up to an even one.
+#[test]
+fn rows_far_apart_keep_the_mean_damage() {
+    // Loads on half of the round: most forces between rows would be too small.
+    let force = |angle: f64| 1000.0 * angle.cos().max(0.0).powf(1.5);
+    let mean = |power: f64| {
+        let sum: f64 = (0..3600)
+            .map(|p| force(f64::from(p) / 3600.0 * TAU).powf(power))
+            .sum();
+        (sum / 3600.0).powf(1.0 / power)
+    };
+    let [turning, standing] = [3.0, 10.0 / 3.0].map(mean);
+    for (pitches, spread) in [
+        (0.05, 1e-4),
+        (0.53, 2e-3),
+        (1.37, 0.02),
+        (2.71, 0.05),
+        (5.3, 0.09),
+    ] {
+        let [inner, outer] = NINTH.lives(&sparse(pitches, |azimuth, _| force(azimuth)));
+        let expected = (RATINGS[0] / turning).powi(3);
+        assert_close(&format!("inner, {pitches}"), inner, expected, 2e-3);
+        let expected = (RATINGS[1] / standing).powi(3);
+        assert_close(
+            &format!("outer, {pitches}"),
+            outer,
+            (1.0 + 0.5 * spread) * expected,
+            0.6 * spread,
+        );
+    }
+}
+
 /// Wrong: what cannot be counted would give a number.
 #[test]
 fn what_cannot_be_counted_is_said() {
