@@ -20,7 +20,7 @@
 //! has not passed lie between two that it has, and take what is between. Cost: rows times balls.
 //!
 //! Between two rows of a history the damage (Q / Q_c)^3 of a ball is linear along its way, so that rows at any distance
-//! keep its mean.
+//! keep its mean; [`crate::spacing`] says what distant rows leave open.
 
 use std::f64::consts::TAU;
 

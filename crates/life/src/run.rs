@@ -11,12 +11,13 @@ use results::failure::Failure;
 use results::integrity::doubts;
 use results::summary::SUMMARY_FILE;
 use results::table::Table;
-use scene::{Analysis, MeshFiles, Scene, geometry, rolling, speeds};
+use scene::{Analysis, MeshFiles, Scene, geometry, rolling, speeds, time_below};
 
 use crate::assess::{Exposure, Rated, life_of};
 use crate::damage::{History, RingMotion, at_rest, bearing_life, even_life};
 use crate::equivalent::{BearingLoad, EquivalentLoads};
 use crate::error::LifeError;
+use crate::spacing::Spacing;
 
 /// Name of the table of the balls.
 const BALLS: &str = "balls.csv";
@@ -169,6 +170,7 @@ impl FinishedRun {
             notes: Vec::new(),
         };
         exposure.notes = history_notes(&history, &exposure);
+        exposure.notes.extend(self.wide_rows(&history, duration));
         Ok(exposure)
     }
 
@@ -190,6 +192,33 @@ impl FinishedRun {
         }
         history.join_azimuths(&cage_angles);
         Ok(history)
+    }
+
+    /// Where the rows of a history of a duration, s, lie too far apart for its forces: that, and what to do.
+    fn wide_rows(&self, history: &History, duration: f64) -> Option<String> {
+        let spacing = Some(Spacing::of(history)).filter(Spacing::is_too_wide)?;
+        let (table, step) = match &self.scenes[0].analysis {
+            Analysis::Dynamic(dynamic) => ("dynamic", dynamic.step),
+            Analysis::QuasiStatic(quasi) => ("quasi_static", quasi.step),
+            Analysis::Static | Analysis::Sweep(_) | Analysis::Modes(_) => return None,
+        };
+        let apart = duration / (self.starts.len() - 2) as f64;
+        // Whole numbers come with round-off.
+        let steps = (1.0 + 1e-9) * spacing.needed() * apart / step;
+        let expected = match (steps >= 1.0, self.scenes[0].output.tables_every) {
+            (true, _) => format!("output.tables_every of {} or less", steps.floor()),
+            (false, 1) => format!("{table}.step of {} or less", time_below(steps * step)),
+            (false, _) => format!(
+                "output.tables_every of 1 and {table}.step of {} or less",
+                time_below(steps * step)
+            ),
+        };
+        Some(format!(
+            "warning: rows of {BALLS} lie {:.2} ball pitches apart, and forces change much from one to the next: \
+             lives of the rings may be off by {}; expected {expected}",
+            spacing.pitches,
+            spacing.error()
+        ))
     }
 
     /// Every point of a sweep, or the one of a static scene.

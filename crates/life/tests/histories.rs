@@ -7,6 +7,7 @@ use std::f64::consts::TAU;
 use contact::Side;
 use dynamics::kinematics::BothRings;
 use life::damage::{History, bearing_life, even_life, ring_life};
+use life::spacing::Spacing;
 
 use support::assert_close;
 
@@ -255,6 +256,28 @@ fn rows_far_apart_keep_the_mean_damage() {
             0.6 * spread,
         );
     }
+}
+
+/// Wrong: rows too far apart for the forces would stand without a word, or rows that do no harm would be blamed: those
+/// under equal forces, and dense ones. The doubt of forces that come and go is 1/2 by its definition.
+#[test]
+fn the_doubt_is_that_of_forces_between_rows() {
+    let of_half = |angle: f64, _: usize| 1000.0 * angle.cos().max(0.0).powf(1.5);
+    let axial = Spacing::of(&sparse(5.3, |_, _| 400.0));
+    assert!(axial.doubt == 0.0 && !axial.is_too_wide(), "{axial:?}");
+    assert_close("pitches", axial.pitches, 5.3, 1e-9);
+    let come_and_go = Spacing::of(&sparse(0.3, |_, row| if row % 2 == 0 { 400.0 } else { 0.0 }));
+    assert_close("comes and goes", come_and_go.doubt, 0.5, 1e-12);
+    let dense = Spacing::of(&sparse(0.25, of_half));
+    assert!(!dense.is_too_wide() && dense.doubt < 3e-3, "{dense:?}");
+    let twice = Spacing::of(&sparse(0.5, of_half));
+    assert_close("square of the distance", twice.doubt / dense.doubt, 4.0, 0.03);
+    let far = Spacing::of(&sparse(2.71, of_half));
+    assert!(far.is_too_wide() && far.error() == "up to a third", "{far:?}");
+    assert_close("needed", far.needed(), 0.25 / 2.71, 1e-9);
+    // A turn of the cage from row to row: every ball keeps its force, though places differ.
+    let whole = Spacing::of(&sparse(18.0, of_half));
+    assert!(whole.is_too_wide(), "{whole:?}");
 }
 
 /// Wrong: what cannot be counted would give a number.
