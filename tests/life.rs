@@ -6,11 +6,11 @@ use crate::util::tables::number;
 use crate::util::{Dir, RIGID, SCENE, assert_close, with_line};
 
 /// What all lives here are told besides the loads.
-const LIFE: &str = "[life]\ncontact_angle = \"15 deg\"\nspeed = \"1800 rpm\"\nviscosity_ratio = 1.5\n\
+pub const LIFE: &str = "[life]\ncontact_angle = \"15 deg\"\nspeed = \"1800 rpm\"\nviscosity_ratio = 1.5\n\
                     contamination = 0.6\n\n[static]";
 const SWEEP: &str = "[sweep]\nkey = \"effects.radial_force.value\"\nvalues = [\"0 kN\", \"1 kN\", \"4 kN\"]";
 /// A turn and a little, by which no position of a ring is left out.
-const TURN: &str =
+pub const TURN: &str =
     "[quasi_static]\nduration = \"35 ms\"\nstep = \"0.1 ms\"\n\n[speed]\ninner = \"1800 rpm\"\n";
 
 /// A folder with a scene of rigid rings with `[life]`.
@@ -20,13 +20,15 @@ fn scene(analysis: &str) -> Dir {
     dir
 }
 
-fn life(dir: &Dir, arguments: &[&str]) -> String {
+/// What the command says.
+pub fn life(dir: &Dir, arguments: &[&str]) -> String {
     let outcome = dir.raceway(&[&["life"], arguments].concat());
     assert_eq!(outcome.code, Some(0), "{arguments:?}: {}", outcome.stderr);
     outcome.stdout
 }
 
-fn life_file(dir: &Dir, folder: &str) -> Value {
+/// What it wrote into a folder of results.
+pub fn life_file(dir: &Dir, folder: &str) -> Value {
     serde_json::from_str(&dir.text(&format!("{folder}/life.json"))).unwrap()
 }
 

@@ -26,6 +26,7 @@ mod includes;
 mod integration_points;
 mod interruption;
 mod life;
+mod life_of_histories;
 mod limits;
 mod matrix_housing;
 mod matrix_scripts;

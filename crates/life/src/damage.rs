@@ -18,6 +18,9 @@
 //! position comes to be passed as often as any other: the forces at a position are those of its own passes, their
 //! number is the mean one. Where balls go to and fro, passes are counted as they are. Positions that a short history
 //! has not passed lie between two that it has, and take what is between. Cost: rows times balls.
+//!
+//! Between two rows of a history the damage (Q / Q_c)^3 of a ball is linear along its way, so that rows at any distance
+//! keep its mean; [`crate::spacing`] says what distant rows leave open.
 
 use std::f64::consts::TAU;
 
@@ -82,6 +85,22 @@ pub struct History {
 }
 
 impl History {
+    /// Takes the jumps out of azimuths that lie within a turn, as tables have them. `cage_angles`, rad, `[n_rows]`, are
+    /// those of rolling without slip.
+    ///
+    /// A ball goes on from the row before by that angle which is nearest to the cage's. Free balls lag behind the
+    /// cage by more and more turns, but by less than half a turn from one row to the next.
+    pub fn join_azimuths(&mut self, cage_angles: &[f64]) {
+        for row in 1..self.azimuths.len() {
+            let cage = cage_angles[row] - cage_angles[row - 1];
+            for ball in 0..self.azimuths[row].len() {
+                let expected = self.azimuths[row - 1][ball] + cage;
+                let azimuth = &mut self.azimuths[row][ball];
+                *azimuth += TAU * ((expected - *azimuth) / TAU).round();
+            }
+        }
+    }
+
     /// Turns of the inner ring against the outer one, to and fro.
     pub fn turns(&self) -> f64 {
         let relative = |[inner, outer]: BothRings| inner - outer;
@@ -104,7 +123,7 @@ impl History {
             for row in 1..self.azimuths.len() {
                 let [from, to] = [row - 1, row].map(|row| BallPlace {
                     place: self.azimuths[row][ball] - self.ring_angles[row][side.index()],
-                    damage: self.forces[row][ball][side.index()] / rating,
+                    damage: (self.forces[row][ball][side.index()] / rating).powi(3),
                 });
                 count.roll(from, to);
             }
@@ -156,7 +175,7 @@ impl History {
 struct BallPlace {
     /// Angle in the frame of the ring, rad.
     place: f64,
-    /// Force over the rating.
+    /// (Q / Q_c)^3.
     damage: f64,
 }
 
@@ -179,7 +198,8 @@ impl Count {
         }
     }
 
-    /// A ball rolls on; its force is linear along the way.
+    /// A ball rolls on; its damage is linear along the way. A force that is linear would cut its peaks off and make
+    /// lives too long, twice for rows that are pitches apart.
     fn roll(&mut self, from: BallPlace, to: BallPlace) {
         let n = self.passes.len();
         let width = TAU / n as f64;
@@ -191,9 +211,8 @@ impl Count {
         let (low, high) = (before(from.place.min(to.place)), before(from.place.max(to.place)));
         for number in low + 1..=high {
             let share = ((number as f64 + 0.5) * width - from.place) / way;
-            let force = from.damage + share.clamp(0.0, 1.0) * (to.damage - from.damage);
             let position = number.rem_euclid(n as i64) as usize;
-            self.damage[position] += force.powi(3);
+            self.damage[position] += from.damage + share.clamp(0.0, 1.0) * (to.damage - from.damage);
             self.passes[position] += 1;
         }
     }

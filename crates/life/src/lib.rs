@@ -2,6 +2,7 @@
 //!
 //! - [`rating`], [`equivalent`]: ISO 281 and ISO 76 from the dimensions, as in a catalogue.
 //! - [`damage`]: ISO 16281 from the forces of the balls, in equilibria and, by counting passes, in any history.
+//! - [`spacing`]: whether the rows of a history lie close enough.
 //! - [`lubrication`]: reliability, viscosity and dirt.
 //! - Load spectra: conditions with their shares of time.
 //! - [`risk`]: life from the stress below the contacts, as a ratio. Research.
@@ -18,6 +19,7 @@ pub mod lubrication;
 pub mod rating;
 pub mod risk;
 mod run;
+pub mod spacing;
 mod spectrum;
 mod stress_life;
 mod table;

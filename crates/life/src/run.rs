@@ -11,12 +11,13 @@ use results::failure::Failure;
 use results::integrity::doubts;
 use results::summary::SUMMARY_FILE;
 use results::table::Table;
-use scene::{Analysis, MeshFiles, Scene, geometry, rolling, speeds};
+use scene::{Analysis, MeshFiles, Scene, geometry, rolling, speeds, time_below};
 
 use crate::assess::{Exposure, Rated, life_of};
 use crate::damage::{History, RingMotion, at_rest, bearing_life, even_life};
 use crate::equivalent::{BearingLoad, EquivalentLoads};
 use crate::error::LifeError;
+use crate::spacing::Spacing;
 
 /// Name of the table of the balls.
 const BALLS: &str = "balls.csv";
@@ -169,6 +170,7 @@ impl FinishedRun {
             notes: Vec::new(),
         };
         exposure.notes = history_notes(&history, &exposure);
+        exposure.notes.extend(self.wide_rows(&history, duration));
         Ok(exposure)
     }
 
@@ -178,24 +180,45 @@ impl FinishedRun {
         let forces = Side::BOTH.map(|side| self.table.column(&format!("{}_force_n", side.name())));
         let [inner, outer] = forces;
         let (inner, outer) = (inner?, outer?);
-        let start = rolling.pose(times[0]).now.cage_angle;
-        let mut history = History::default();
+        let (mut history, mut cage_angles) = (History::default(), Vec::new());
         for rows in self.starts.windows(2).map(|w| w[0]..w[1]) {
-            let time = times[rows.start];
-            let pose = rolling.pose(time);
+            let pose = rolling.pose(times[rows.start]);
             history.ring_angles.push(pose.ring_angles);
-            // The table has azimuths from 0 to a turn; the cage says which turn.
-            let expected = |ball: usize| azimuths[ball] + pose.now.cage_angle - start;
-            let unwrapped = rows.clone().enumerate().map(|(ball, row)| {
-                let off = expected(ball) - azimuths[row];
-                azimuths[row] + TAU * (off / TAU).round()
-            });
-            history.azimuths.push(unwrapped.collect());
+            cage_angles.push(pose.now.cage_angle);
+            history.azimuths.push(azimuths[rows.clone()].to_vec());
             history
                 .forces
                 .push(rows.map(|row| [inner[row], outer[row]]).collect());
         }
+        history.join_azimuths(&cage_angles);
         Ok(history)
+    }
+
+    /// Where the rows of a history of a duration, s, lie too far apart for its forces: that, and what to do.
+    fn wide_rows(&self, history: &History, duration: f64) -> Option<String> {
+        let spacing = Some(Spacing::of(history)).filter(Spacing::is_too_wide)?;
+        let (table, step) = match &self.scenes[0].analysis {
+            Analysis::Dynamic(dynamic) => ("dynamic", dynamic.step),
+            Analysis::QuasiStatic(quasi) => ("quasi_static", quasi.step),
+            Analysis::Static | Analysis::Sweep(_) | Analysis::Modes(_) => return None,
+        };
+        let apart = duration / (self.starts.len() - 2) as f64;
+        // Whole numbers come with round-off.
+        let steps = (1.0 + 1e-9) * spacing.needed() * apart / step;
+        let expected = match (steps >= 1.0, self.scenes[0].output.tables_every) {
+            (true, _) => format!("output.tables_every of {} or less", steps.floor()),
+            (false, 1) => format!("{table}.step of {} or less", time_below(steps * step)),
+            (false, _) => format!(
+                "output.tables_every of 1 and {table}.step of {} or less",
+                time_below(steps * step)
+            ),
+        };
+        Some(format!(
+            "warning: rows of {BALLS} lie {:.2} ball pitches apart, and forces change much from one to the next: \
+             lives of the rings may be off by {}; expected {expected}",
+            spacing.pitches,
+            spacing.error()
+        ))
     }
 
     /// Every point of a sweep, or the one of a static scene.

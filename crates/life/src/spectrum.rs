@@ -202,6 +202,15 @@ fn weights(raw: &RawSpectrum, exposures: &[Exposure]) -> anyhow::Result<Vec<f64>
     Ok(turns.iter().map(|turns| turns / sum).collect())
 }
 
+/// What warns of the life of a condition, and so of the whole.
+fn warnings((condition, exposure): (&RawCondition, &Exposure)) -> Vec<String> {
+    let of_condition = |text| format!("warning: {}: {text}", condition.results.display());
+    let notes = exposure.notes.iter();
+    notes
+        .filter_map(|note| Some(of_condition(note.strip_prefix("warning: ")?)))
+        .collect()
+}
+
 /// All conditions as one exposure.
 fn together(raw: &RawSpectrum, exposures: &[Exposure], weights: &[f64]) -> Assessment {
     let mut whole = exposures[0].clone();
@@ -224,7 +233,7 @@ fn together(raw: &RawSpectrum, exposures: &[Exposure], weights: &[f64]) -> Asses
     }
     whole.equivalent.dynamic = cubes.cbrt();
     whole.damage = plain;
-    whole.notes = Vec::new();
+    whole.notes = raw.conditions.iter().zip(exposures).flat_map(warnings).collect();
     let shares = raw.conditions.iter().map(|condition| condition.share);
     let speeds: Option<Vec<f64>> = exposures.iter().map(speed_of).collect();
     whole.speed = speeds.map(|speeds| shares.zip(speeds).map(|(share, n)| share * n).sum());

@@ -7,6 +7,7 @@ use std::f64::consts::TAU;
 use contact::Side;
 use dynamics::kinematics::BothRings;
 use life::damage::{History, bearing_life, even_life, ring_life};
+use life::spacing::Spacing;
 
 use support::assert_close;
 
@@ -189,6 +190,94 @@ fn positions_between_passed_ones_take_what_is_between() {
         let expected = (of_place((p as f64 + 0.5).to_radians()) / RATINGS[1]).powi(3);
         assert_close(&format!("position {p}"), *damage, expected, 0.05);
     }
+}
+
+/// Wrong: free balls that lag behind the rolling of the cage by turns would pass positions that they never came to, or
+/// the azimuths of balls that keep step with it would change.
+#[test]
+fn balls_that_lag_by_turns_keep_their_own_way() {
+    let angles = even_turns([20.0, 0.0], 3000);
+    let cage_angles: Vec<f64> = angles.iter().map(|[inner, _]| NINTH.cage * inner).collect();
+    // In step, with a tenth of the cage's speed, and against it.
+    for speed in [1.0, 0.1, -0.3] {
+        let own = Rolling {
+            cage: speed * NINTH.cage,
+        };
+        let expected = own.history(&angles, |azimuth, _| of_place(azimuth));
+        let mut history = expected.clone();
+        for azimuth in history.azimuths.iter_mut().flatten() {
+            *azimuth = azimuth.rem_euclid(TAU);
+        }
+        history.join_azimuths(&cage_angles);
+        for (joined, expected) in history.azimuths.iter().zip(&expected.azimuths) {
+            for (joined, expected) in joined.iter().zip(expected) {
+                assert!((joined - expected).abs() < 1e-10, "{speed}: {joined} {expected}");
+            }
+        }
+    }
+}
+
+/// A history of 40 turns of the inner ring whose rows lie so many ball pitches of the cage apart.
+fn sparse(pitches: f64, force: impl Fn(f64, usize) -> f64) -> History {
+    let step = pitches * TAU / BALLS as f64 / NINTH.cage;
+    let n = (40.0 * TAU / step) as usize;
+    let angles: Vec<BothRings> = (0..=n).map(|row| [step * row as f64, 0.0]).collect();
+    NINTH.history(&angles, force)
+}
+
+/// Wrong: rows that lie pitches apart would cut the peaks of forces off, and lives come out up to twice as long. The
+/// mean damage is that of the rows at any distance; on the ring that stands it spreads, up to an even one.
+#[test]
+fn rows_far_apart_keep_the_mean_damage() {
+    // Loads on half of the round: most forces between rows would be too small.
+    let force = |angle: f64| 1000.0 * angle.cos().max(0.0).powf(1.5);
+    let mean = |power: f64| {
+        let sum: f64 = (0..3600)
+            .map(|p| force(f64::from(p) / 3600.0 * TAU).powf(power))
+            .sum();
+        (sum / 3600.0).powf(1.0 / power)
+    };
+    let [turning, standing] = [3.0, 10.0 / 3.0].map(mean);
+    for (pitches, spread) in [
+        (0.05, 1e-4),
+        (0.53, 2e-3),
+        (1.37, 0.02),
+        (2.71, 0.05),
+        (5.3, 0.09),
+    ] {
+        let [inner, outer] = NINTH.lives(&sparse(pitches, |azimuth, _| force(azimuth)));
+        let expected = (RATINGS[0] / turning).powi(3);
+        assert_close(&format!("inner, {pitches}"), inner, expected, 2e-3);
+        let expected = (RATINGS[1] / standing).powi(3);
+        assert_close(
+            &format!("outer, {pitches}"),
+            outer,
+            (1.0 + 0.5 * spread) * expected,
+            0.6 * spread,
+        );
+    }
+}
+
+/// Wrong: rows too far apart for the forces would stand without a word, or rows that do no harm would be blamed: those
+/// under equal forces, and dense ones. The doubt of forces that come and go is 1/2 by its definition.
+#[test]
+fn the_doubt_is_that_of_forces_between_rows() {
+    let of_half = |angle: f64, _: usize| 1000.0 * angle.cos().max(0.0).powf(1.5);
+    let axial = Spacing::of(&sparse(5.3, |_, _| 400.0));
+    assert!(axial.doubt == 0.0 && !axial.is_too_wide(), "{axial:?}");
+    assert_close("pitches", axial.pitches, 5.3, 1e-9);
+    let come_and_go = Spacing::of(&sparse(0.3, |_, row| if row % 2 == 0 { 400.0 } else { 0.0 }));
+    assert_close("comes and goes", come_and_go.doubt, 0.5, 1e-12);
+    let dense = Spacing::of(&sparse(0.25, of_half));
+    assert!(!dense.is_too_wide() && dense.doubt < 3e-3, "{dense:?}");
+    let twice = Spacing::of(&sparse(0.5, of_half));
+    assert_close("square of the distance", twice.doubt / dense.doubt, 4.0, 0.03);
+    let far = Spacing::of(&sparse(2.71, of_half));
+    assert!(far.is_too_wide() && far.error() == "up to a third", "{far:?}");
+    assert_close("needed", far.needed(), 0.25 / 2.71, 1e-9);
+    // A turn of the cage from row to row: every ball keeps its force, though places differ.
+    let whole = Spacing::of(&sparse(18.0, of_half));
+    assert!(whole.is_too_wide(), "{whole:?}");
 }
 
 /// Wrong: what cannot be counted would give a number.

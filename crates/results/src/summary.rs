@@ -247,8 +247,12 @@ impl Summary {
         }
     }
 
-    /// The same with ratings and life.
-    pub fn with_life(self, life: Option<serde_json::Value>) -> Summary {
+    /// The same with ratings and life, and what warns of them.
+    pub fn with_life(mut self, life: Option<serde_json::Value>) -> Summary {
+        let notes = life.as_ref().and_then(|life| life["notes"].as_array());
+        let texts = notes.into_iter().flatten().filter_map(|note| note.as_str());
+        let warnings = texts.filter_map(|text| text.strip_prefix("warning: "));
+        self.warnings.extend(warnings.map(|text| format!("life: {text}")));
         Summary { life, ..self }
     }
 

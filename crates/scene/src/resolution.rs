@@ -25,6 +25,9 @@ const STEPS_PER_EDGE: f64 = 5.0;
 const STEPS_PER_PERIOD: f64 = 20.0;
 /// TimeSteps per period below which a motion shows another frequency (Nyquist).
 const LEAST_STEPS: f64 = 2.0;
+/// Ball pitches from row to row from which lives of rings may be off by 3 %, and those that are enough for 1 %.
+const WIDE_ROWS: f64 = 0.5;
+const CLOSE_ROWS: f64 = 0.25;
 /// TimeSteps of a pulse from which its shape is there.
 const STEPS_PER_PULSE: f64 = 10.0;
 
@@ -33,6 +36,8 @@ struct TimeSteps {
     table: &'static str,
     step: f64,
     duration: f64,
+    /// Steps from one with fields to the next.
+    output_every: u64,
     /// Whether what is not resolved makes all results wrong.
     is_fixed_motion: bool,
 }
@@ -68,6 +73,7 @@ fn judged(scene: &Scene, geometry: &BearingGeometry, half_widths: BothRings) -> 
         return said;
     };
     judge_passing(scene, geometry, &steps, &mut said);
+    judge_rows(scene, geometry, &steps, &mut said);
     for (key, schedule) in schedules(scene) {
         judge_schedule(&key, &schedule, &steps, &mut said);
     }
@@ -86,12 +92,14 @@ impl TimeSteps {
                 table: "dynamic",
                 step: dynamic.step,
                 duration: dynamic.duration,
+                output_every: dynamic.output_every,
                 is_fixed_motion: dynamic.adaptive.is_none(),
             }),
             Analysis::QuasiStatic(quasi) => Some(TimeSteps {
                 table: "quasi_static",
                 step: quasi.step,
                 duration: quasi.duration,
+                output_every: quasi.output_every,
                 is_fixed_motion: false,
             }),
             Analysis::Static | Analysis::Sweep(_) | Analysis::Modes(_) => None,
@@ -109,7 +117,7 @@ impl TimeSteps {
             "{what}, {n:.2} steps of {} per period; expected {STEPS_PER_PERIOD} or more: {}.step of {} or less",
             time(self.step),
             self.table,
-            time(below(advice))
+            time_below(advice)
         );
         if n < LEAST_STEPS && self.is_fixed_motion {
             said.problems.push(format!(
@@ -159,6 +167,27 @@ fn judge_passing(scene: &Scene, geometry: &BearingGeometry, steps: &TimeSteps, s
     };
     let what = format!("at {turns} balls pass a point of the {what} {rate:.1} times per second");
     steps.judge_rate(&what, rate, said);
+}
+
+/// Rows of the tables, from which a life is counted, at the largest speed of the cage.
+fn judge_rows(scene: &Scene, geometry: &BearingGeometry, steps: &TimeSteps, said: &mut Said) {
+    let (Some(speeds), Some(_)) = (&scene.speed, &scene.life) else {
+        return;
+    };
+    // Steps with fields have rows besides.
+    let every = scene.output.tables_every.min(steps.output_every);
+    let turning = Kinematics::new(geometry, scene.effects.slip());
+    let cage = |speeds: BothRings| turning.of_cage(speeds).abs();
+    let rate = scene.bearing.balls as f64 * cage(speeds.at_largest(cage)) / TAU;
+    let pitches = rate * steps.step * every as f64;
+    if every > 1 && pitches > WIDE_ROWS {
+        let enough = every as f64 * CLOSE_ROWS / pitches;
+        said.warnings.push(format!(
+            "[life]: rows of balls.csv lie {pitches:.2} ball pitches apart; where forces differ round the bearing, \
+             expected {CLOSE_ROWS} or less: output.tables_every of {} or less",
+            enough.floor().max(1.0)
+        ));
+    }
 }
 
 /// The keys of a scene that have a schedule, and it.
@@ -234,7 +263,7 @@ fn warn_of_impact((start, duration): (f64, f64), steps: &TimeSteps, warn: &mut i
             duration / steps.step,
             time(steps.step),
             steps.table,
-            time(below(duration / STEPS_PER_PULSE)),
+            time_below(duration / STEPS_PER_PULSE),
             match steps.table {
                 "dynamic" => "its impulse is whole, its shape is not there",
                 _ => "its peak may lie between two instants",
@@ -325,7 +354,7 @@ impl WornTrack<'_> {
                     STEPS_PER_PERIOD * needed / steps.step,
                     time(steps.step),
                     steps.table,
-                    time(below(needed))
+                    time_below(needed)
                 ));
             }
         }
@@ -350,7 +379,7 @@ impl WornTrack<'_> {
                 1e3 * self.half_width,
                 time(steps.step),
                 steps.table,
-                time(below(needed))
+                time_below(needed)
             ));
         }
     }
@@ -373,9 +402,9 @@ fn warn_of_table(times: &[f64], steps: &TimeSteps, warn: &mut dyn FnMut(String))
 }
 
 /// Two digits of a time, not more than it.
-fn below(seconds: f64) -> f64 {
+pub fn time_below(seconds: f64) -> String {
     let unit = 10f64.powi(seconds.log10().floor() as i32 - 1);
-    (seconds / unit * (1.0 + 1e-9)).floor() * unit
+    time((seconds / unit * (1.0 + 1e-9)).floor() * unit)
 }
 
 fn time(seconds: f64) -> String {
