@@ -253,3 +253,18 @@ fn a_file_that_is_no_log_stays() {
     );
     assert_eq!(dir.text("out/run.log"), "mine");
 }
+
+/// Wrong: a path that is not UTF-8 would end a run in a panic before it says what is wrong, or its log be lost.
+#[test]
+fn a_path_that_is_not_utf_8_is_no_panic() {
+    let dir = Dir::with_scene(SCENE);
+    let missing = dir.raceway_after(r"set -- run $'bad\xff.toml' --out x", &[]);
+    assert_eq!(missing.code, Some(2), "{}", missing.stderr);
+    let missing = dir.raceway_after(r"set -- resume $'bad\xff'", &[]);
+    assert_eq!(missing.code, Some(2), "{}", missing.stderr);
+    let words = r#"cp scene.toml $'good\xff.toml'; set -- run $'good\xff.toml' --out run "$@""#;
+    let run = dir.raceway_after(words, &RIGID);
+    assert_eq!(run.code, Some(0), "{}", run.stderr);
+    let log = dir.text("run/run.log");
+    assert!(log.contains("run good\u{fffd}.toml --out run"), "{log}");
+}

@@ -463,7 +463,11 @@ fn refusals_of_a_campbell_diagram_say_what_and_where() {
     dir.write("scene.toml", locked.replacen("z = \"free\"", "z = \"30 um\"", 1));
     refused(
         &["--speeds", "0..1:1"],
-        "error: no dof of the shaft is free, so it has no modes; free some in [shaft], or give --number",
+        "error: no dof of the shaft is free, so it has no modes; free some in [shaft]\n",
+    );
+    refused(
+        &["--speeds", "0..1:1", "--number", "3"],
+        "error: no dof of the shaft is free, so it has no modes; free some in [shaft]\n",
     );
     let sweep = "[sweep]\nkey = \"effects.axial_force.value\"\nvalues = [\"1 kN\", \"2 kN\"]";
     dir.write("scene.toml", with_line("[static]", "[static]", sweep));

@@ -33,6 +33,7 @@ mod matrix_scripts;
 mod memory;
 mod memory_of_lists;
 mod modes;
+mod modes_of_balls;
 mod motion;
 mod moved_results;
 mod output_fields;

@@ -21,7 +21,7 @@ use results::whole::require_free;
 use scene::{AnyScene, Scene, build_model, doubts, model_with_rings};
 
 use crate::campbell_files::{
-    self, Diagram, GROWS, MODES_OF_BEAM, growing, require_one_point, without_stress,
+    self, Diagram, MODES_OF_BEAM, growing, keep_modes_of_shaft, require_one_point, without_stress,
 };
 use crate::damping::{damping_note, laws};
 use crate::progress::Progress;
@@ -122,17 +122,17 @@ pub fn campbell(command: &CampbellCommand) -> Result<(), Failure> {
 /// How many modes are wanted: at least one.
 fn number_of_modes(command: &CampbellCommand, model: &Model, has_bodies: bool) -> Result<usize, Failure> {
     let n_free = model.shaft.iter().filter(|dof| **dof == ShaftDof::Free).count();
-    let number = command
-        .number
-        .unwrap_or(if has_bodies { MODES_OF_BEAM } else { n_free });
-    if number == 0 {
-        let problem = match command.number {
-            Some(_) => "--number is 0; expected at least 1",
-            None => "no dof of the shaft is free, so it has no modes; free some in [shaft], or give --number",
-        };
-        return Err(Failure::User(anyhow!("{problem}")));
+    if command.number == Some(0) {
+        return Err(Failure::User(anyhow!("--number is 0; expected at least 1")));
     }
-    Ok(number)
+    if n_free == 0 && !has_bodies {
+        return Err(Failure::User(anyhow!(
+            "no dof of the shaft is free, so it has no modes; free some in [shaft]"
+        )));
+    }
+    Ok(command
+        .number
+        .unwrap_or(if has_bodies { MODES_OF_BEAM } else { n_free }))
 }
 
 /// The equations of a bearing with elastic bodies at a speed, rad/s.
@@ -190,9 +190,7 @@ fn diagram(
             Some(bodies) => in_bodies(bodies, (&model, &linear), (&solver, &solution), speeds[0]),
         };
         let mut modes = modes.and_then(modes_of).map_err(at)?;
-        // Balls that creep back have no frequency.
-        modes.retain(|mode| mode.frequency > 0.0 || mode.damping_ratio < GROWS);
-        modes.truncate(number);
+        keep_modes_of_shaft(&mut modes, number);
         warnings.extend(growing(rpm, &modes));
         // What is wrong at a speed is more so at the next.
         if !is_warned {

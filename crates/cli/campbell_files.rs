@@ -24,6 +24,17 @@ use crate::linear_figures::draw;
 /// Dynamics of Rotors and Foundations, 1993), so by 1e-3 or more from 130 Hz on.
 pub const GROWS: f64 = -1e-3;
 
+/// Share of shaft and bodies in the kinetic energy up to which a mode is one of balls alone, of which there are many.
+const OF_BALLS: f64 = 0.02;
+
+/// Keeps the lowest modes that swing and in which the shaft or a body takes part, and all before them that grow by
+/// themselves.
+pub fn keep_modes_of_shaft(modes: &mut Vec<WhirlMode>, number: usize) {
+    let is_of_shaft = |mode: &WhirlMode| mode.shaft_share + mode.standing_share > OF_BALLS;
+    modes.retain(|mode| mode.damping_ratio < GROWS || (mode.swings() && is_of_shaft(mode)));
+    modes.truncate(number);
+}
+
 /// What a user should know of a mode that grows, by its number among those shown.
 pub fn growing(rpm: f64, modes: &[WhirlMode]) -> Option<String> {
     let number = modes.iter().position(|mode| mode.damping_ratio < GROWS)?;
@@ -69,6 +80,17 @@ pub fn require_one_point(analysis: &Analysis, scene: &Path) -> Result<(), Failur
     )))
 }
 
+/// Refuses a diagram without any mode, before there are files of it.
+fn require_modes(found: &[ModesAtSpeed]) -> Result<(), Failure> {
+    if found.iter().any(|at| !at.modes.is_empty()) {
+        return Ok(());
+    }
+    Err(Failure::User(anyhow!(
+        "no mode of the shaft or of a body swings at any of the speeds: damping stops all of them, or nothing but \
+         balls moves; give less damping, or free a dof in [shaft]"
+    )))
+}
+
 /// Writes tables and figures into a folder, and prints the diagram; cage and balls are those of `geometry`.
 pub fn write(
     diagram: &Diagram,
@@ -76,6 +98,7 @@ pub fn write(
     geometry: &BearingGeometry,
     slip: SlipRatios,
 ) -> Result<(), Failure> {
+    require_modes(&diagram.modes)?;
     make_asked_folder(out)?;
     write_campbell(out, &diagram.modes, geometry, slip)?;
     print_campbell(&diagram.modes);

@@ -249,7 +249,9 @@ fn main() -> ExitCode {
     if matches!(arguments.command, Command::Run { .. } | Command::Resume(_))
         && Communicator::world().is_root()
     {
-        log::keep(&std::env::args().collect::<Vec<_>>());
+        // A path need not be UTF-8.
+        let arguments = std::env::args_os().map(|argument| argument.to_string_lossy().into_owned());
+        log::keep(&arguments.collect::<Vec<_>>());
     }
     let failure = execute(arguments).err();
     let end = environment.finish(failure.is_none());

@@ -8,7 +8,6 @@ use assembly::stiffness::LinearAssembly;
 use assembly::whirl::TurningAssembly;
 use assembly::{Assembly, AssemblySolver};
 use dynamics::kinematics::Speed;
-use dynamics::whirl::WhirlMode;
 use results::campbell::{CAMPBELL_LINES, CAMPBELL_TABLE, ModesAtSpeed};
 use results::failure::Failure;
 use results::survey::say_doubts;
@@ -16,16 +15,13 @@ use results::whole::require_free;
 use scene::{SeveralScene, assembly_with_rings, build_assembly};
 
 use crate::campbell_files::{
-    self, Diagram, GROWS, MODES_OF_BEAM, growing, require_one_point, without_stress,
+    self, Diagram, MODES_OF_BEAM, growing, keep_modes_of_shaft, require_one_point, without_stress,
 };
 use crate::damping::{damping_note, laws};
 use crate::progress::Progress;
 use crate::several::{rings, solving, warnings_at};
 use crate::several_read::all_doubts;
 use crate::stiffness::instant;
-
-/// Share of shaft and housings in the energy below which a mode is one of balls alone, of which there are many.
-const OF_BALLS: f64 = 0.02;
 
 /// Computes the modes at speeds, rpm, and writes them.
 pub fn campbell(
@@ -121,12 +117,4 @@ fn turn_shaft(scene: &mut SeveralScene, speed: f64) {
         own.inner = Speed::constant(bearing.orientation.turned_angle(speed));
         bearing.scene.speed = Some(own);
     }
-}
-
-/// Keeps the lowest modes in which the shaft or a body takes part, and all before them that grow by themselves.
-fn keep_modes_of_shaft(modes: &mut Vec<WhirlMode>, number: usize) {
-    // Balls that creep back have no frequency.
-    modes.retain(|mode| mode.frequency > 0.0 || mode.damping_ratio < GROWS);
-    modes.retain(|mode| mode.shaft_share + mode.standing_share > OF_BALLS || mode.damping_ratio < GROWS);
-    modes.truncate(number);
 }

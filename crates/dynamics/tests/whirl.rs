@@ -10,7 +10,7 @@ use dynamics::model::ShaftInertia;
 use dynamics::modes::{ModesSettings, bearing_modes};
 use dynamics::motion::{Motion, MotionSettings, StepCache};
 use dynamics::stiffness::ShaftMatrix;
-use dynamics::whirl::{TurningShaft, Whirl, WhirlMode, turning_inertia};
+use dynamics::whirl::{ShaftRow, TurningShaft, Whirl, WhirlMatrices, WhirlMode, turning_inertia};
 use dynamics::{
     Backend, ContactMode, DampingLaws, DynamicsError, Hold, Linearisation, Model, ShaftDof, StaticSolver,
 };
@@ -74,6 +74,66 @@ fn closed_form(k: &ShaftMatrix, speed: f64) -> Vec<f64> {
         roots.push(low);
     }
     roots
+}
+
+/// A shaft of 1 kg on the ground by a spring, and twelve balls of 10 g between both, each contact with 1e7 N/m and this
+/// damping, N s/m.
+fn shaft_and_equal_balls(damping: f64) -> TurningShaft {
+    let n = 13;
+    let of_contacts = |each: f64, ground: f64| {
+        let mut matrix = vec![0.0; n * n];
+        matrix[0] = ground + 12.0 * each;
+        for i in 1..n {
+            matrix[(n + 1) * i] = 2.0 * each;
+            (matrix[i], matrix[n * i]) = (-each, -each);
+        }
+        matrix
+    };
+    let mut mass = of_contacts(0.0, 1.0);
+    (1..n).for_each(|i| mass[(n + 1) * i] = 0.01);
+    let matrices = WhirlMatrices {
+        n,
+        mass,
+        rates: of_contacts(damping, 0.0),
+        stiffness: of_contacts(1e7, 3e7),
+    };
+    TurningShaft::of_matrices(matrices, vec![ShaftRow { node: 0, dof: 0 }], 0.0)
+}
+
+/// Wrong: equal balls that creep back would pass for modes by what round-off makes of their frequency, or a mode that
+/// swings be left out. Critical damping of balls between rings that stand is 2 sqrt(2 k m) / 2 = 447 N s/m.
+#[test]
+fn balls_that_creep_back_do_not_swing() {
+    let critical = (2.0 * 1e7 * 0.01_f64).sqrt();
+    let swinging = |damping: f64| -> Vec<WhirlMode> {
+        let modes = shaft_and_equal_balls(damping).modes().unwrap();
+        modes.into_iter().filter(WhirlMode::swings).collect()
+    };
+    assert_eq!(swinging(0.0).len(), 13);
+    // Eleven of equal balls against each other, at a damping ratio of 0.999, and the shaft; all balls against the shaft
+    // are damped by more.
+    assert_eq!(swinging(0.999 * critical).len(), 12);
+    let mut with_round_off = 0;
+    for damping in [
+        critical,
+        1.1 * critical,
+        3.0 * critical,
+        10.0 * critical,
+        100.0 * critical,
+    ] {
+        let all = shaft_and_equal_balls(damping).modes().unwrap();
+        with_round_off += all
+            .iter()
+            .filter(|mode| mode.frequency > 0.0 && !mode.swings())
+            .count();
+        let swinging: Vec<&WhirlMode> = all.iter().filter(|mode| mode.swings()).collect();
+        assert!(
+            swinging.iter().all(|mode| mode.shaft_share > 0.5),
+            "{damping}: {swinging:?}"
+        );
+        assert!(swinging.len() <= 1, "{damping}: {swinging:?}");
+    }
+    assert!(with_round_off > 0, "no round-off, so this shows nothing");
 }
 
 /// Wrong: a gyroscopic term would be missing or turn the wrong way, or forward and backward be exchanged. 4 degrees of

@@ -11,24 +11,62 @@ pub struct Cycle {
     pub count: f64,
 }
 
-/// Peaks and valleys of a history, its ends included; swings of `least` or less are passed over.
+/// Peaks and valleys of a history, its ends included; swings of `least` or less are passed over. None of a history
+/// that never swings by more.
 pub fn turning_points(history: &[f64], least: f64) -> Vec<f64> {
     let mut points: Vec<f64> = Vec::new();
     for &value in history {
-        let Some(&last) = points.last() else {
-            points.push(value);
-            continue;
-        };
-        let rising = points.len() > 1 && last > points[points.len() - 2];
-        let falling = points.len() > 1 && last < points[points.len() - 2];
-        let goes_on = (rising && value >= last) || (falling && value <= last);
-        if goes_on {
-            *points.last_mut().expect("there is a last point") = value;
-        } else if (value - last).abs() > least {
-            points.push(value);
-        }
+        go_on(&mut points, value, least, |_| {});
+    }
+    if !has_turned(&points, least) {
+        points.clear();
     }
     points
+}
+
+/// Goes on with a value. Points are the turning points, then the last value, which may yet become one; before the first
+/// turning point is found, the least and the largest value, or one if they are equal. `turned` is told of the points
+/// where the last of them is a turning point.
+fn go_on(points: &mut Vec<f64>, value: f64, least: f64, turned: impl FnOnce(&mut Vec<f64>)) {
+    if !has_turned(points, least) {
+        return begin(points, value, least);
+    }
+    let &mut [.., before, ref mut last] = &mut points[..] else {
+        unreachable!("a history that has turned has two points");
+    };
+    // The point before the last is the turning point before it: closing cycles keeps it.
+    if (*last > before && value >= *last) || (*last < before && value <= *last) {
+        *last = value;
+    } else if (value - *last).abs() > least {
+        turned(points);
+        points.push(value);
+    }
+}
+
+/// Whether the first turning point is found. Points in a row are more than `least` apart, also after cycles are closed,
+/// which takes out the smaller ranges.
+fn has_turned(points: &[f64], least: f64) -> bool {
+    match *points {
+        [] | [_] => false,
+        [first, second] => (second - first).abs() > least,
+        _ => true,
+    }
+}
+
+/// Goes on before the first turning point is found. It is the least or the largest value so far, not the first one: a
+/// history may start amid its swings.
+fn begin(points: &mut Vec<f64>, value: f64, least: f64) {
+    let low = points.first().copied().unwrap_or(value);
+    let high = points.last().copied().unwrap_or(value);
+    points.clear();
+    if value - low > least {
+        points.extend([low, value]);
+    } else if high - value > least {
+        points.extend([high, value]);
+    } else {
+        points.extend([low.min(value), high.max(value)]);
+        points.dedup();
+    }
 }
 
 /// Cycles of a sequence of peaks and valleys, in the order in which they close; what is left at the end are half
@@ -81,32 +119,24 @@ impl Cycle {
 /// itself, and the last value, which may yet become one.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct OpenHistory {
-    /// Turning points of open cycles, then the last value.
+    /// Turning points of open cycles, then the last value; before the first turning point is found, the least and the
+    /// largest value, or one if they are equal.
     pub points: Vec<f64>,
 }
 
 impl OpenHistory {
     /// Goes on with a value; swings of `least` or less are passed over. Cycles that it closes go to `closed`.
     pub fn push(&mut self, value: f64, least: f64, mut closed: impl FnMut(Cycle)) {
-        let (last, goes_on) = match self.points[..] {
-            [] => return self.points.push(value),
-            [last] => (last, false),
-            // The point before the last is the turning point before it: closing cycles keeps it.
-            [.., before, last] => (
-                last,
-                (last > before && value >= last) || (last < before && value <= last),
-            ),
-        };
-        if goes_on {
-            *self.points.last_mut().expect("there is a last value") = value;
-        } else if (value - last).abs() > least {
-            close(&mut self.points, &mut closed);
-            self.points.push(value);
-        }
+        go_on(&mut self.points, value, least, |points| {
+            close(points, &mut closed)
+        });
     }
 
-    /// The cycles that are left if the history ends here.
-    pub fn rest(&self) -> Vec<Cycle> {
+    /// The cycles that are left if the history ends here; `least` as before.
+    pub fn rest(&self, least: f64) -> Vec<Cycle> {
+        if !has_turned(&self.points, least) {
+            return Vec::new();
+        }
         let (mut open, mut cycles) = (self.points.clone(), Vec::new());
         close(&mut open, &mut |cycle| cycles.push(cycle));
         cycles.extend(halves(&open));
@@ -144,6 +174,35 @@ mod tests {
         assert!(cycles.iter().all(|c| c.range > 0.9));
     }
 
+    /// Wrong: a history that starts amid its swings would lose those between `least` and twice as much. A sine of 100
+    /// periods turns twice in each, wherever it starts; its ends may add two points.
+    #[test]
+    fn swings_are_found_wherever_the_history_starts() {
+        for eighth in 0..8 {
+            let at = |k: i32| (std::f64::consts::TAU * (f64::from(k) / 40.0 + f64::from(eighth) / 8.0)).sin();
+            let wave: Vec<f64> = (0..=4000).map(|k| 0.95 * at(k)).collect();
+            let points = turning_points(&wave, 1.0);
+            assert!((199..=202).contains(&points.len()), "{eighth}: {}", points.len());
+            let cycles = rainflow(&points);
+            assert!(cycles.iter().all(|cycle| cycle.range > 1.0), "{eighth}");
+            let whole: f64 = cycles.iter().filter(|c| c.range > 1.89).map(|c| c.count).sum();
+            assert!((99.0..=100.0).contains(&whole), "{eighth}: {whole}");
+            assert_eq!(turning_points(&wave, 1.901), [0.0; 0]);
+        }
+    }
+
+    /// Wrong: a slow start below the least swing would be lost, or count as a swing of its own.
+    #[test]
+    fn the_first_turning_point_is_the_extreme_before_the_first_swing() {
+        assert_eq!(
+            turning_points(&[0.0, -0.5, 0.4, 2.0, 1.5, -1.0], 1.0),
+            [-0.5, 2.0, -1.0]
+        );
+        assert_eq!(turning_points(&[0.0, 0.9, 0.2, -0.5, 1.0], 1.0), [0.9, -0.5, 1.0]);
+        assert_eq!(turning_points(&[0.0, 0.9, 0.0], 1.0), [0.0; 0]);
+        assert_eq!(turning_points(&[3.0, 3.0], 0.0), [0.0; 0]);
+    }
+
     /// Wrong: cycles counted while a history goes on would be others, or come in another order, than those of the whole
     /// history. Histories of values that repeat have equal ranges, in which the counts differ most easily; 2000 of
     /// them, up to 60 values long, by a linear congruential generator (Knuth, MMIX).
@@ -165,7 +224,7 @@ mod tests {
             for &value in &values {
                 open.push(value, least, |cycle| found.push(cycle));
             }
-            found.extend(open.rest());
+            found.extend(open.rest(least));
             assert_eq!(
                 found,
                 rainflow(&turning_points(&values, least)),

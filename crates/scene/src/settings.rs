@@ -49,6 +49,7 @@ pub fn effects_context(scene: &Scene) -> Context {
         seat_diameters: [scene.bearing.bore_diameter, scene.bearing.outside_diameter].map(Some),
         has_expansion: scene.materials.has_expansion(),
         has_lubricant: scene.lubricant.is_some(),
+        turning_mass: scene.shaft.turning_mass(&scene.inner),
     }
 }
 

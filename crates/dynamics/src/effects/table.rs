@@ -97,6 +97,8 @@ pub struct Context {
     pub has_expansion: [bool; 2],
     /// Whether the scene has a lubricant.
     pub has_lubricant: bool,
+    /// Mass of all that turns with the shaft, kg; None where the scene leaves it open, or meshes have a part of it.
+    pub turning_mass: Option<f64>,
 }
 
 impl Context {

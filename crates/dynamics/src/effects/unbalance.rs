@@ -104,7 +104,7 @@ impl table::EffectTable for UnbalanceTable {
         judge("unbalance", table.is_some(), ratio, &estimate)
     }
 
-    fn check(&self, _context: Context, problems: &mut Problems) {
+    fn check(&self, context: Context, problems: &mut Problems) {
         let mass = self.mass.si();
         problems.require(
             mass > 0.0 && mass <= MAX_MASS,
@@ -112,6 +112,17 @@ impl table::EffectTable for UnbalanceTable {
             &self.mass,
             "expected more than 0 and at most 1000 kg; without an unbalance leave the table out",
         );
+        if let Some(all) = context.turning_mass.filter(|_| mass <= MAX_MASS) {
+            problems.require(
+                mass <= all,
+                "effects.unbalance.mass",
+                &self.mass,
+                format!(
+                    "expected at most {all} kg, all that turns: the mass off the axis is part of shaft.mass; \
+                     check the unit of both"
+                ),
+            );
+        }
         let eccentricity = self.eccentricity.si();
         problems.require(
             eccentricity > 0.0 && eccentricity <= MAX_LENGTH,
@@ -217,6 +228,7 @@ mod tests {
             seat_diameters: [None; 2],
             has_expansion: [false; 2],
             has_lubricant: false,
+            turning_mass: Some(2.0),
         };
         let messages = |mass: &str, eccentricity: &str, position: &str| {
             let table = UnbalanceTable {
@@ -230,7 +242,14 @@ mod tests {
             problems.into_texts()
         };
         assert!(messages("10 g", "5 mm", "-80 mm").is_empty());
+        // All of a rotor may be off the axis, as that of Jeffcott.
+        assert!(messages("2 kg", "1 um", "0 mm").is_empty());
         for (values, expected) in [
+            (
+                ["3 kg", "1 um", "0 mm"],
+                "effects.unbalance.mass is 3 kg; expected at most 2 kg, all that turns: the mass off the axis is part \
+                 of shaft.mass; check the unit of both",
+            ),
             (
                 ["0 g", "5 mm", "0 mm"],
                 "effects.unbalance.mass is 0 g; expected more than 0 and at most 1000 kg; without an unbalance leave \

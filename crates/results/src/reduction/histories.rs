@@ -58,7 +58,7 @@ impl NodeHistories {
     pub fn fields(&self, n_points: usize) -> [(&'static str, Vec<f64>); 2] {
         let [mut damage, mut cycles] = [vec![f64::NAN; n_points], vec![f64::NAN; n_points]];
         for (&node, count) in self.nodes.iter().zip(&self.counts) {
-            let rest = count.open.rest();
+            let rest = count.open.rest(self.asked.least_range);
             damage[node] = rest
                 .iter()
                 .fold(count.damage, |sum, &cycle| sum + damage_of(cycle, self.asked));
@@ -121,18 +121,47 @@ mod tests {
 
     use super::*;
 
-    /// Wrong: damage would not be Miner's sum by the S-N line, or counts would be lost in a restart state. Twenty half
-    /// cycles of the reference amplitude and ten cycles of half of it, with k = 3 and N_ref = 1000: (10 + 10/8) / 1000.
-    #[test]
-    fn damage_is_the_sum_over_the_cycles_by_the_line() {
-        let asked = CycleDamage {
+    /// A line with k = 3 and N_ref = 1000 at 100 Pa.
+    fn asked(least_range: f64) -> CycleDamage {
+        CycleDamage {
             stress: DamageStress::SignedVonMises,
             exponent: 3.0,
             reference_amplitude: 100.0,
             reference_cycles: 1000.0,
-            least_range: 0.0,
+            least_range,
             nodes: DamageNodes::All,
-        };
+        }
+    }
+
+    /// Wrong: a run that was resumed before its stress had turned would count other cycles, or one that has not swung
+    /// would have damage. A sine of 190 Pa from its mean, swings above 100 Pa, a restart state at every value.
+    #[test]
+    fn a_history_that_has_not_turned_goes_on_from_a_restart_state() {
+        let mut whole = NodeHistories::new(asked(100.0), vec![0]);
+        let mut cut = NodeHistories::new(asked(100.0), vec![0]);
+        for step in 0..400 {
+            let value = 95.0 * (std::f64::consts::TAU * f64::from(step) / 40.0).sin();
+            whole.add(&[value]);
+            cut.add(&[value]);
+            let mut arrays = Arrays::new();
+            cut.store(&mut arrays);
+            cut = NodeHistories::new(asked(100.0), vec![0]);
+            cut.load(&arrays).unwrap();
+            let [[(_, damage), (_, cycles)], [(_, again), (_, cycles_again)]] =
+                [&whole, &cut].map(|h| h.fields(1));
+            assert_eq!(again[0].to_bits(), damage[0].to_bits(), "{step}");
+            assert_eq!(cycles_again, cycles, "{step}");
+            assert_eq!(damage[0] > 0.0, step > 20, "{step}");
+        }
+        let [_, (_, cycles)] = whole.fields(1);
+        assert_eq!(cycles, [9.5]);
+    }
+
+    /// Wrong: damage would not be Miner's sum by the S-N line, or counts would be lost in a restart state. Twenty half
+    /// cycles of the reference amplitude and ten cycles of half of it, with k = 3 and N_ref = 1000: (10 + 10/8) / 1000.
+    #[test]
+    fn damage_is_the_sum_over_the_cycles_by_the_line() {
+        let asked = asked(0.0);
         let mut values: Vec<f64> = (0..20).map(|i| if i % 2 == 0 { 100.0 } else { -100.0 }).collect();
         values.extend((0..20).map(|i| if i % 2 == 0 { 50.0 } else { -50.0 }));
         values.push(100.0);

@@ -15,7 +15,7 @@ use super::materials::Materials;
 use super::modes::ModesContext;
 use super::output::OutputContext;
 use super::profiles::ProfilesContext;
-use super::ring::MeshFiles;
+use super::ring::{MeshFiles, Ring};
 use super::shaft::Shaft;
 use super::speed::{RawSpeed, SpeedUse, makes_force};
 use super::sweep::{Analysis, RawStatic};
@@ -88,8 +88,8 @@ impl RawScene {
     pub(super) fn effects_context(
         &self,
         is_flexible: [bool; 2],
-        bearing: Option<&Bearing>,
-        materials: Option<&Materials>,
+        (bearing, materials): (Option<&Bearing>, Option<&Materials>),
+        (shaft, inner): (&Shaft, &Ring),
     ) -> Context {
         let seats = bearing.map(|b| [b.bore_diameter, b.outside_diameter]);
         Context {
@@ -101,6 +101,7 @@ impl RawScene {
             // Materials that are wrong are reported themselves.
             has_expansion: materials.map_or([true; 2], Materials::has_expansion),
             has_lubricant: self.lubricant.is_some(),
+            turning_mass: shaft.turning_mass(inner),
         }
     }
 

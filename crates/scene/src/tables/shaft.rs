@@ -32,6 +32,7 @@ use serde::de::value::MapAccessDeserializer;
 use serde::de::{Deserializer, Error, MapAccess, Visitor};
 
 use super::bearing::Bearing;
+use super::ring::Ring;
 
 /// As typed.
 #[derive(Debug, Deserialize)]
@@ -96,6 +97,15 @@ pub struct Shaft {
     pub mass: f64,
     /// Moments of inertia of the same.
     pub inertia: ShaftInertia,
+}
+
+impl Shaft {
+    /// Mass of all that turns with the shaft, kg; None where the scene leaves it open, or meshes have a part of it: a
+    /// flexible inner ring, and a body that carries it.
+    pub fn turning_mass(&self, inner: &Ring) -> Option<f64> {
+        let is_known = inner.body.is_none() && self.mass > 0.0;
+        is_known.then(|| self.mass + inner.inertia.map_or(0.0, |ring| ring.mass))
+    }
 }
 
 /// Load points farther away than this many outside diameters are slips of the unit.

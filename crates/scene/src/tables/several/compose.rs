@@ -360,6 +360,7 @@ fn check_loads(raw: &RawSeveral, problems: &mut Problems) {
         seat_diameters: [None; 2],
         has_expansion: [true; 2],
         has_lubricant: false,
+        turning_mass: None,
     };
     on_shaft.check(context, problems);
 }

@@ -107,3 +107,23 @@ fn an_idle_speed_is_refused_with_every_effect_that_would_use_it() {
         assert_eq!(message.contains(&header), uses_it, "{header}: {message}");
     }
 }
+
+/// Wrong: a mass off the axis that is heavier than all that turns would be solved, though it is a part of that, or one
+/// be refused where the scene does not say what turns: without a mass, or with the mesh of a ring.
+#[test]
+fn an_unbalance_heavier_than_what_turns_is_refused() {
+    let rigid = [
+        "contact.mode=rigid",
+        "inner.flexible=false",
+        "outer.flexible=false",
+    ];
+    let text = with_effects("[effects.unbalance]\nmass = \"3 kg\"\neccentricity = \"1 um\"");
+    let message = message_of(&text, &rigid);
+    let expected = "effects.unbalance.mass is 3 kg; expected at most 2 kg, all that turns: the mass off the axis is \
+                    part of shaft.mass; check the unit of both";
+    assert!(message.contains(expected), "{message}");
+    for others in [&["shaft.mass=3 kg"][..], &["shaft.mass=0 kg"]] {
+        parse(&text, &[&rigid[..], others].concat()).unwrap();
+    }
+    parse(&text, &[]).unwrap();
+}
