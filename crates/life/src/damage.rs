@@ -85,22 +85,6 @@ pub struct History {
 }
 
 impl History {
-    /// Takes the jumps out of azimuths that lie within a turn, as tables have them. `cage_angles`, rad, `[n_rows]`, are
-    /// those of rolling without slip.
-    ///
-    /// A ball goes on from the row before by that angle which is nearest to the cage's. Free balls lag behind the
-    /// cage by more and more turns, but by less than half a turn from one row to the next.
-    pub fn join_azimuths(&mut self, cage_angles: &[f64]) {
-        for row in 1..self.azimuths.len() {
-            let cage = cage_angles[row] - cage_angles[row - 1];
-            for ball in 0..self.azimuths[row].len() {
-                let expected = self.azimuths[row - 1][ball] + cage;
-                let azimuth = &mut self.azimuths[row][ball];
-                *azimuth += TAU * ((expected - *azimuth) / TAU).round();
-            }
-        }
-    }
-
     /// Turns of the inner ring against the outer one, to and fro.
     pub fn turns(&self) -> f64 {
         let relative = |[inner, outer]: BothRings| inner - outer;

@@ -7,6 +7,7 @@ use anyhow::{Context, anyhow, ensure};
 use checkpoint::{all_steps, open_regular, read_any_step};
 use contact::Side;
 use dynamics::kinematics::{BothRings, Kinematics, Rolling};
+use results::ball_turns::BallTurns;
 use results::failure::Failure;
 use results::integrity::doubts;
 use results::summary::SUMMARY_FILE;
@@ -177,20 +178,27 @@ impl FinishedRun {
     /// Azimuths, angles and forces of a history.
     fn passes(&self, rolling: &Rolling) -> anyhow::Result<History> {
         let (times, azimuths) = (self.table.column("time_s")?, self.table.column("azimuth_rad")?);
+        let turns = BallTurns::new(&self.table, &self.scenes[0])?;
         let forces = Side::BOTH.map(|side| self.table.column(&format!("{}_force_n", side.name())));
         let [inner, outer] = forces;
         let (inner, outer) = (inner?, outer?);
-        let (mut history, mut cage_angles) = (History::default(), Vec::new());
+        let mut history = History::default();
         for rows in self.starts.windows(2).map(|w| w[0]..w[1]) {
             let pose = rolling.pose(times[rows.start]);
             history.ring_angles.push(pose.ring_angles);
-            cage_angles.push(pose.now.cage_angle);
-            history.azimuths.push(azimuths[rows.clone()].to_vec());
+            let next = match history.azimuths.last() {
+                Some(before) => before
+                    .iter()
+                    .zip(rows.clone())
+                    .map(|(before, row)| before + turns.between(row - rows.len(), row))
+                    .collect(),
+                None => azimuths[rows.clone()].to_vec(),
+            };
+            history.azimuths.push(next);
             history
                 .forces
                 .push(rows.map(|row| [inner[row], outer[row]]).collect());
         }
-        history.join_azimuths(&cage_angles);
         Ok(history)
     }
 

@@ -192,31 +192,6 @@ fn positions_between_passed_ones_take_what_is_between() {
     }
 }
 
-/// Wrong: free balls that lag behind the rolling of the cage by turns would pass positions that they never came to, or
-/// the azimuths of balls that keep step with it would change.
-#[test]
-fn balls_that_lag_by_turns_keep_their_own_way() {
-    let angles = even_turns([20.0, 0.0], 3000);
-    let cage_angles: Vec<f64> = angles.iter().map(|[inner, _]| NINTH.cage * inner).collect();
-    // In step, with a tenth of the cage's speed, and against it.
-    for speed in [1.0, 0.1, -0.3] {
-        let own = Rolling {
-            cage: speed * NINTH.cage,
-        };
-        let expected = own.history(&angles, |azimuth, _| of_place(azimuth));
-        let mut history = expected.clone();
-        for azimuth in history.azimuths.iter_mut().flatten() {
-            *azimuth = azimuth.rem_euclid(TAU);
-        }
-        history.join_azimuths(&cage_angles);
-        for (joined, expected) in history.azimuths.iter().zip(&expected.azimuths) {
-            for (joined, expected) in joined.iter().zip(expected) {
-                assert!((joined - expected).abs() < 1e-10, "{speed}: {joined} {expected}");
-            }
-        }
-    }
-}
-
 /// A history of 40 turns of the inner ring whose rows lie so many ball pitches of the cage apart.
 fn sparse(pitches: f64, force: impl Fn(f64, usize) -> f64) -> History {
     let step = pitches * TAU / BALLS as f64 / NINTH.cage;
