@@ -371,9 +371,9 @@ impl AssemblySolver {
             solvers[bearing.solver].timing.merge(&bearing.laps);
             found.push(bearing.last);
         }
-        let found = found.into_iter();
-        let found = found.map(|last| last.expect("every bearing has answered"));
-        settled.map(|settled| (settled, found.collect()))
+        let settled = settled?;
+        let answered = |last: Option<StaticSolution>| last.expect("every bearing has answered");
+        Ok((settled, found.into_iter().map(answered).collect()))
     }
 }
 

@@ -18,6 +18,7 @@
 use std::f64::consts::TAU;
 
 use contact::Side;
+use scene::CLOSE_ROWS;
 
 use crate::damage::History;
 
@@ -27,8 +28,6 @@ const NOTABLE: f64 = 0.07;
 const SMALL: f64 = 0.2;
 /// Distance of rows from which the doubt no longer grows with its square, pitches.
 const WIDE: f64 = 1.0;
-/// Distance of rows that is enough for 1 %, pitches: with seven balls of which two carry.
-const ENOUGH: f64 = 0.25;
 
 /// How far apart rows lie.
 #[derive(Clone, Copy, Debug)]
@@ -60,7 +59,7 @@ impl Spacing {
     /// Part of the distance that would do.
     pub fn needed(&self) -> f64 {
         match self.pitches >= WIDE {
-            true => ENOUGH / self.pitches,
+            true => CLOSE_ROWS / self.pitches,
             false => (NOTABLE / self.doubt).sqrt(),
         }
     }

@@ -27,7 +27,7 @@ pub use doubts::doubts;
 pub use error::BuildError;
 pub use housing::Rings;
 pub use meshing::{build_meshes, build_missing};
-pub use resolution::time_below;
+pub use resolution::{CLOSE_ROWS, time_below};
 pub use revolve_like::{MadeLike, RevolveLike, revolve_like};
 pub use settings::{effects_context, settings, speeds};
 pub use several::{assembly_with_rings, build_assembly, have_same_rings, loads as loads_on_shaft};

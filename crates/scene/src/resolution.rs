@@ -25,9 +25,10 @@ const STEPS_PER_EDGE: f64 = 5.0;
 const STEPS_PER_PERIOD: f64 = 20.0;
 /// TimeSteps per period below which a motion shows another frequency (Nyquist).
 const LEAST_STEPS: f64 = 2.0;
-/// Ball pitches from row to row from which lives of rings may be off by 3 %, and those that are enough for 1 %.
+/// Ball pitches from row to row from which lives of rings may be off by 3 %.
 const WIDE_ROWS: f64 = 0.5;
-const CLOSE_ROWS: f64 = 0.25;
+/// Ball pitches from row to row that are enough for lives to 1 %, with seven balls of which two carry.
+pub const CLOSE_ROWS: f64 = 0.25;
 /// TimeSteps of a pulse from which its shape is there.
 const STEPS_PER_PULSE: f64 = 10.0;
 

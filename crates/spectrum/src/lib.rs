@@ -303,9 +303,7 @@ impl Samples {
 fn draw(named: &Titled, marks: &[Line], upto: Option<f64>) -> anyhow::Result<Figure> {
     let LineSpectrum { resolution, values } = &named.spectrum;
     let highest = marks.iter().map(|line| line.frequency).fold(0.0, f64::max);
-    let end = upto
-        .unwrap_or(10.0 * highest)
-        .min(*resolution * (values.len() - 1) as f64);
+    let end = upto.unwrap_or(10.0 * highest).min(named.spectrum.highest());
     ensure!(
         end > 2.0 * resolution,
         "the record is too short for a figure up to {end} {unit}: its resolution is {resolution:.6} {unit}",

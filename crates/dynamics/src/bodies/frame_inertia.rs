@@ -77,7 +77,7 @@ impl FrameInertia {
             true => pairs.map(|[a, b]| (b - a) / dt),
             false => self.seen_from_frame(&course),
         };
-        let x = pairs.map(|pair| self.weighted(pair));
+        let x = pairs.map(|pair| self.shaft.weighted(pair));
         let mut forces = turn(self.in_frame(x, v), at);
         let spin = self.shaft_spin(q, &course);
         (forces[3], forces[4]) = (forces[3] + spin[0], forces[4] + spin[1]);
@@ -86,17 +86,20 @@ impl FrameInertia {
 
     /// Velocity in the frame at the weighted time of a course in space: v - W J x.
     fn seen_from_frame(&self, [x, v, _]: &ShaftCourse) -> [f64; 5] {
-        let (speed, jx) = (self.weighted(self.speeds), across(*x));
+        let (speed, jx) = (self.shaft.weighted(self.speeds), across(*x));
         turn([0, 1, 2, 3, 4].map(|i| v[i] - speed * jx[i]), -self.angles[1])
     }
 
     /// Moment about x and y that the spin of the shaft asks for, N m: the change of its momentum, over the step or at
     /// the weighted time.
     fn shaft_spin(&self, q: [f64; 5], [x, v, _]: &ShaftCourse) -> [f64; 2] {
-        let ([from, to], dt) = (self.speeds, self.shaft.scheme.dt);
+        let ([from, to], [speed, growth]) = (self.speeds, self.shaft.spin(self.speeds));
         let rate = |i: usize| match self.shaft.takes_means() {
-            true => self.shaft_polar * (to * q[i] - from * self.shaft.start[0][i]) / dt,
-            false => self.shaft_polar * (self.weighted(self.speeds) * v[i] + (to - from) / dt * x[i]),
+            true => {
+                let change = to * q[i] - from * self.shaft.start[0][i];
+                self.shaft_polar * change / self.shaft.scheme.dt
+            }
+            false => self.shaft_polar * (speed * v[i] + growth * x[i]),
         };
         [rate(4), -rate(3)]
     }
@@ -115,10 +118,7 @@ impl FrameInertia {
     /// Work of the forces on the shaft over the step, J, with velocities that are means, and what those of the weighted
     /// time add to it: the scheme's own.
     pub fn works(&self, q: [f64; 5]) -> [f64; 2] {
-        let work = |of: &FrameInertia| -> f64 {
-            let forces = of.forces(q);
-            (0..5).map(|i| forces[i] * (q[i] - of.shaft.start[0][i])).sum()
-        };
+        let work = |of: &FrameInertia| of.shaft.work(of.forces(q), q);
         if self.shaft.takes_means() {
             return [work(self), 0.0];
         }
@@ -131,8 +131,7 @@ impl FrameInertia {
 
     /// The forces in the frame at the displacement `x` and the velocity `v` seen from it.
     fn in_frame(&self, x: [f64; 5], v: [f64; 5]) -> [f64; 5] {
-        let speed = self.weighted(self.speeds);
-        let rate = (self.speeds[1] - self.speeds[0]) / self.shaft.scheme.dt;
+        let [speed, rate] = self.shaft.spin(self.speeds);
         let jx = across(x);
         let of_linear = |polar: f64, by_stress: f64| {
             let moment = |i: usize| {
@@ -150,11 +149,6 @@ impl FrameInertia {
         }
         let of_body = of_linear(self.body_polar, 0.0);
         [0, 1, 2, 3, 4].map(|i| forces[i] + of_body[i])
-    }
-
-    fn weighted(&self, [start, end]: [f64; 2]) -> f64 {
-        let s = self.shaft.scheme.integrator.alpha_f;
-        s * start + (1.0 - s) * end
     }
 }
 

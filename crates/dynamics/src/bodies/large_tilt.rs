@@ -21,7 +21,6 @@
 //! second order, and reversible in time with the conserving scheme. A shaft without inertia of its own remembers mean
 //! velocities alone, so that its accelerations lag by half a step.
 
-use ring::StepScheme;
 use ring::rigid::RigidInertia;
 
 use super::shaft_course::{ShaftCourse, ShaftStart};
@@ -58,11 +57,7 @@ pub struct LargeTilt {
 impl LargeTilt {
     /// Forces and moments on the shaft that the inertia asks for when it ends at `q`, N and N m.
     pub fn forces(&self, q: [f64; 5]) -> [f64; 5] {
-        let StepScheme { integrator, dt } = self.shaft.scheme;
-        let [start, end] = self.speeds;
-        let speed = integrator.alpha_f * start + (1.0 - integrator.alpha_f) * end;
-        let rate = (end - start) / dt;
-        beyond_linear(&self.inertia, [speed, rate], &self.shaft.course(q))
+        beyond_linear(&self.inertia, self.shaft.spin(self.speeds), &self.shaft.course(q))
     }
 
     /// Growth of the forces with `q` at the start, by columns.
@@ -80,8 +75,7 @@ impl LargeTilt {
 
     /// Work of the forces on the shaft over the step, J.
     pub fn work(&self, q: [f64; 5]) -> f64 {
-        let forces = self.forces(q);
-        (0..5).map(|i| forces[i] * (q[i] - self.shaft.start[0][i])).sum()
+        self.shaft.work(self.forces(q), q)
     }
 }
 
@@ -175,7 +169,7 @@ fn sine_over_angle(square: f64) -> [f64; 3] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use ring::Integrator;
+    use ring::{Integrator, StepScheme};
 
     const ROTOR: RigidInertia = RigidInertia {
         mass: 0.8,

@@ -23,12 +23,27 @@ pub struct ShaftStart {
 }
 
 impl ShaftStart {
+    /// At the weighted time of the step, of values at the start and at the end.
+    pub fn weighted(&self, [start, end]: [f64; 2]) -> f64 {
+        let alpha = self.scheme.integrator.alpha_f;
+        alpha * start + (1.0 - alpha) * end
+    }
+
+    /// Speed at the weighted time, and its rate, of speeds at the start and at the end.
+    pub fn spin(&self, speeds: [f64; 2]) -> [f64; 2] {
+        [self.weighted(speeds), (speeds[1] - speeds[0]) / self.scheme.dt]
+    }
+
+    /// Work of forces on the shaft over the step that ends at `q`, J.
+    pub fn work(&self, forces: [f64; 5], q: [f64; 5]) -> f64 {
+        (0..5).map(|i| forces[i] * (q[i] - self.start[0][i])).sum()
+    }
+
     /// At the weighted time of the step that ends at `q`.
     pub fn course(&self, q: [f64; 5]) -> ShaftCourse {
-        let alpha = self.scheme.integrator.alpha_f;
         let all = [0, 1, 2, 3, 4];
         [
-            all.map(|i| alpha * self.start[0][i] + (1.0 - alpha) * q[i]),
+            all.map(|i| self.weighted([self.start[0][i], q[i]])),
             all.map(|i| self.velocity(i, q[i])),
             all.map(|i| self.acceleration(i, q[i])),
         ]
@@ -43,12 +58,12 @@ impl ShaftStart {
     fn velocity(&self, i: usize, end: f64) -> f64 {
         let StepScheme { integrator, dt } = self.scheme;
         let [x, v, a] = self.start.map(|all| all[i]);
-        let (mean, alpha) = ((end - x) / dt, integrator.alpha_f);
+        let mean = (end - x) / dt;
         match (self.takes_means(), self.remembers[i]) {
             (true, _) => mean,
-            (false, true) => alpha * v + (1.0 - alpha) * integrator.update(dt, end - x, v, a)[0],
+            (false, true) => self.weighted([v, integrator.update(dt, end - x, v, a)[0]]),
             // Between the middles of two steps, and on.
-            (false, false) => mean + (0.5 - alpha) * (mean - v),
+            (false, false) => mean + (0.5 - integrator.alpha_f) * (mean - v),
         }
     }
 
