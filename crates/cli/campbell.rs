@@ -11,7 +11,7 @@ use anyhow::anyhow;
 use assembly::whirl::TurningAssembly;
 use clap::Args;
 use contact::Side;
-use dynamics::kinematics::Speed;
+use dynamics::kinematics::{Kinematics, Speed};
 use dynamics::whirl::{TurningShaft, WhirlMode, turning_inertia};
 use dynamics::{Linearisation, Model, ShaftDof, StaticSolution, StaticSolver};
 use results::campbell::{CAMPBELL_LINES, CAMPBELL_TABLE, ModesAtSpeed};
@@ -57,14 +57,15 @@ pub struct CampbellCommand {
 /// Speeds, rpm.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SpeedRange {
-    range: [f64; 2],
+    first: f64,
+    last: f64,
     step: f64,
 }
 
 impl SpeedRange {
     /// The speeds, rpm; the last is among them if steps lead to it.
     fn values(self) -> Vec<f64> {
-        let [first, last] = self.range;
+        let SpeedRange { first, last, .. } = self;
         let n = ((last - first) / self.step * (1.0 + 4.0 * f64::EPSILON)).floor() as usize;
         (0..=n).map(|i| first + i as f64 * self.step).collect()
     }
@@ -91,10 +92,7 @@ fn parse_speeds(text: &str) -> Result<SpeedRange, String> {
             "the step is {step} rpm; expected more than 0 and at most {MOST_SPEEDS} speeds"
         ));
     }
-    Ok(SpeedRange {
-        range: [first, last],
-        step,
-    })
+    Ok(SpeedRange { first, last, step })
 }
 
 /// Computes the modes and writes them.
@@ -184,7 +182,9 @@ fn diagram(
         let solution = solution.map_err(Failure::solving).map_err(at)?;
         require_load(&solution).map_err(at)?;
         let linear = Linearisation::new(&model, &solver, &solution, laws(&scene.effects));
+        let orbit = Kinematics::new(&model.geometry, scene.effects.slip()).of_cage(speeds);
         let linear = linear.map_err(Failure::solving).map_err(at)?;
+        let linear = linear.going_round(model.ball_mass(), orbit);
         let modes = match &bodies {
             None => TurningShaft::new(&model, &linear, inertia, speeds[0]).map_err(Failure::solving),
             Some(bodies) => in_bodies(bodies, (&model, &linear), (&solver, &solution), speeds[0]),

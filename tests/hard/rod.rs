@@ -160,6 +160,7 @@ impl Rod {
             across: Default::default(),
             unevenness: None,
             strips: None,
+            passing: 0.0,
             ends: None,
         };
         // The other contact of the ball is out of reach.

@@ -87,6 +87,15 @@ impl LinearAssembly {
         Ok(linear)
     }
 
+    /// The same with balls that go round at these speeds, rad/s, each bearing's own: for modes. Matrices over the shaft
+    /// alone stay.
+    pub fn going_round(mut self, assembly: &Assembly, speeds: &[f64]) -> LinearAssembly {
+        let all = self.bearings.into_iter().zip(&assembly.bearings).zip(speeds);
+        let going = all.map(|((own, of), speed)| own.going_round(of.model.ball_mass(), *speed));
+        self.bearings = going.collect();
+        self
+    }
+
     /// Lets the bearings in bodies feel each other.
     fn couple(
         &mut self,

@@ -28,6 +28,7 @@ pub mod statics;
 pub mod modes;
 pub mod motion;
 pub mod moved_seat;
+mod orbit;
 pub mod stiffness;
 pub mod whirl;
 

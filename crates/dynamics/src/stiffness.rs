@@ -39,7 +39,9 @@ use crate::compliance;
 use crate::condensation::Condensation;
 use crate::effects::{Loads, Now, RingDamping};
 use crate::error::DynamicsError;
+use crate::interactions::closing_contact::ClosingContact;
 use crate::interactions::contact_damping::{ContactDamping, coefficient};
+use crate::interactions::raceway_contact::{Site, SiteState};
 use crate::loading::LoadCase;
 use crate::model::{ContactMode, Model};
 use crate::solution::StaticSolution;
@@ -78,6 +80,8 @@ pub struct Linearisation {
     pub(crate) n_balls: usize,
     /// Where rings meet their contacts, by side; only of one that was found anew.
     pub(crate) ports: [Option<RingPorts>; 2],
+    /// How contacts close that are damped, by site; empty without damping.
+    pub(crate) closing: Vec<ClosingContact>,
     /// What loads on the shaft add to its stiffness because their moments change as it tilts.
     pub load_stiffness: ShaftMatrix,
     /// Whether the rings have damping in proportion to mass, which no matrix here has.
@@ -151,6 +155,9 @@ impl Linearisation {
             ring_damping: laws.rings.map_or(0.0, |rings| rings.stiffness),
             n_balls: parts.balls.len(),
             ports: [None, None],
+            closing: laws
+                .contacts
+                .map_or(Vec::new(), |law| closing(parts, &system, &x, law)),
             load_stiffness: load_stiffness(parts, &solution.displacements.shaft),
             leaves_out_mass_damping: laws.rings.is_some_and(|rings| rings.mass > 0.0),
         })
@@ -410,6 +417,20 @@ fn contact_damping(parts: &BearingParts, system: &System, x: &[f64], law: Contac
             forces
         })
         .collect()
+}
+
+/// How the contacts close, with their damping.
+fn closing(parts: &BearingParts, system: &System, x: &[f64], law: ContactDamping) -> Vec<ClosingContact> {
+    let of_site = |(state, site): (&SiteState, &Site)| {
+        let [c, _] = coefficient(&law, state.length - site.touching);
+        let elastic = parts.elastic(site.side).map(BodyId::Elastic);
+        let ports = elastic.map(|body| system.unknowns(body).start + 2 * site.ball);
+        let carrier = parts.carrier(site.side).map(BodyId::Lumped);
+        let carrier = carrier.map(|body| (system.unknowns(body).start, site.carrier_rows()));
+        ClosingContact::new((state, c), (N_SHAFT + 2 * site.ball, ports), carrier)
+    };
+    let states = parts.states(x);
+    states.iter().zip(&parts.contacts.sites).map(of_site).collect()
 }
 
 /// Where a stiffness is least.

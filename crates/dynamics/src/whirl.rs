@@ -16,8 +16,9 @@
 //!
 //! **Left out.** Rings yield without inertia of their own: a frequency f is off by the order of (f/f_r)^2 of the share
 //! of the rings in the compliance, with f_r the first mode of a ring as it is held (`tests/whirl.rs` has numbers).
-//! Balls stand at their azimuths while they vibrate. With two balls or a radial load the matrices change as balls
-//! pass; this is one place of them. The seat of the outer ring follows without mass.
+//! Balls stand at their azimuths while they vibrate, unless the linearisation has them going round
+//! ([`Linearisation::going_round`]). With two balls or a radial load the matrices change as balls pass; this is one
+//! place of them. The seat of the outer ring follows without mass.
 //!
 //! **Whirl.** With X and Y the amplitudes of a pair, (X + iY)/2 goes round from x to y, (X - iY)/2 the other way. The
 //! kinetic energy of the first less that of the second, over their sum, is 1 of a circle along the spin, -1 of one

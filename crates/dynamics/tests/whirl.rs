@@ -3,19 +3,17 @@
 mod support;
 
 use contact::Side;
-use dynamics::effects::{Effect, Loads, Now};
 use dynamics::interactions::contact_damping::ContactDamping;
-use dynamics::kinematics::Speed;
+use dynamics::kinematics::{Kinematics, Speed};
 use dynamics::model::ShaftInertia;
 use dynamics::modes::{ModesSettings, bearing_modes};
 use dynamics::motion::{Motion, MotionSettings, StepCache};
 use dynamics::stiffness::ShaftMatrix;
 use dynamics::whirl::{ShaftRow, TurningShaft, Whirl, WhirlMatrices, WhirlMode, turning_inertia};
-use dynamics::{
-    Backend, ContactMode, DampingLaws, DynamicsError, Hold, Linearisation, Model, ShaftDof, StaticSolver,
-};
+use dynamics::{Backend, ContactMode, DampingLaws, Hold, Linearisation, Model, ShaftDof, StaticSolver};
 use fem::Material;
 
+use support::lines::{PUSH, Push, line_near, of_middle_rule};
 use support::rings::Level;
 use support::{Case, equilibrium, relative};
 
@@ -43,6 +41,18 @@ fn modes(model: &Model, speed: f64, laws: DampingLaws) -> (Vec<WhirlMode>, Shaft
     let inertia = turning_inertia(model).unwrap();
     let shaft = TurningShaft::new(model, &bearing, inertia, speed).unwrap();
     (shaft.modes().unwrap(), bearing.stiffness().unwrap())
+}
+
+/// Modes of balls that go round with their cage.
+fn modes_going_round(model: &Model, speed: f64) -> Vec<WhirlMode> {
+    let mut solver = StaticSolver::new(model).unwrap();
+    let solution = solver.solve(model, None).unwrap();
+    let bearing = Linearisation::new(model, &solver, &solution, DampingLaws::default()).unwrap();
+    let orbit = Kinematics::new(&model.geometry, [0.0; 2]).of_cage([speed, 0.0]);
+    let bearing = bearing.going_round(model.ball_mass(), orbit);
+    let inertia = turning_inertia(model).unwrap();
+    let shaft = TurningShaft::new(model, &bearing, inertia, speed).unwrap();
+    shaft.modes().unwrap()
 }
 
 /// Frequencies, rad/s, at which a rigid rotor whirls on springs that are alike round the axis; negative against the
@@ -311,58 +321,10 @@ fn a_free_dof_without_inertia_is_named() {
     }
 }
 
-/// A force across for a short while, off the plane of the balls, so that it tilts the shaft as well.
-struct Push;
-
-/// Its length, s, and largest force, N.
-const PUSH: [f64; 2] = [3e-4, 4.0];
-
-impl Effect for Push {
-    fn name(&self) -> &'static str {
-        "push"
-    }
-
-    fn add_loads(&self, model: &Model, now: &Now, loads: &mut Loads) -> Result<(), DynamicsError> {
-        if now.time < PUSH[0] {
-            let share = (std::f64::consts::PI * now.time / PUSH[0]).sin();
-            loads.add_shaft_force_at(model.load_point, [PUSH[1] * share * share, 0.0, 0.0]);
-        }
-        Ok(())
-    }
-}
-
-/// Frequency near a guess, Hz, signed by the sense of turning, at which x + i y of a record has the most, under a
-/// window whose side lobes are below 1e-4 (Blackman and Harris).
-fn line_near(record: &[[f64; 2]], dt: f64, guess: f64) -> f64 {
-    let n = record.len() as f64;
-    let size = |f: f64| {
-        let (mut re, mut im) = (0.0, 0.0);
-        for (k, [x, y]) in record.iter().enumerate() {
-            let t = std::f64::consts::TAU * (k as f64 + 0.5) / n;
-            let window = 0.35875 - 0.48829 * t.cos() + 0.14128 * (2.0 * t).cos() - 0.01168 * (3.0 * t).cos();
-            let (sin, cos) = (std::f64::consts::TAU * f * dt * k as f64).sin_cos();
-            re += window * (x * cos + y * sin);
-            im += window * (y * cos - x * sin);
-        }
-        re.hypot(im)
-    };
-    let (mut low, mut high) = (guess - 0.3 / (n * dt), guess + 0.3 / (n * dt));
-    for _ in 0..40 {
-        let (a, b) = (low + 0.382 * (high - low), low + 0.618 * (high - low));
-        if size(a) < size(b) {
-            low = a;
-        } else {
-            high = b;
-        }
-    }
-    0.5 * (low + high)
-}
-
 /// Wrong: with elastic rings, forward and backward modes would not be those of the turning bearing: the gyroscopic
 /// moment of ring and shaft, or what the rings yield under it. A bearing on elastic rings moves in time after a push;
-/// its lines are where the modes at that speed say, on the side of their sense, and as far apart. Balls are light: the
-/// modes let them stand at their azimuths. What is left, 2e-3 of a pair, is that patches follow their contacts in a
-/// motion, not in the stiffness, and the inertia of elastic rings.
+/// its lines are where the modes at that speed say, on the side of their sense, and as far apart. What is left, 2e-3 of
+/// a pair, is that patches follow their contacts in a motion, not in the stiffness, and the inertia of elastic rings.
 #[test]
 #[ignore = "twice 6000 steps of elastic rings: a minute; scripts/test-slow runs it"]
 fn elastic_rings_whirl_in_time_as_their_modes_say() {
@@ -374,13 +336,12 @@ fn elastic_rings_whirl_in_time_as_their_modes_say() {
     let (speed, dt, n) = (3000.0, 1e-5, 6000);
     for hold in [Hold::Clamped, Hold::MeanMotion] {
         let mut model = case.flexible(ContactMode::Patch, Level::hex8(36, 6, 1, 2), hold);
-        model.ball_material = Material::new(207e9, 0.3, 78.0).unwrap();
         model.shaft_mass = 3.0;
         model.shaft_inertia = ShaftInertia {
             transverse: 3e-3,
             polar: 4e-3,
         };
-        let (modes, _) = modes(&model, speed, DampingLaws::default());
+        let modes = modes_going_round(&model, speed);
         let start = equilibrium(&model);
         model.effects.push(Box::new(Push));
         let motion = Motion::new(&model, MotionSettings::conserving(dt, Speed::constant(speed))).unwrap();
@@ -398,11 +359,7 @@ fn elastic_rings_whirl_in_time_as_their_modes_say() {
         for pair in across.chunks_exact(2) {
             assert!(pair[0].whirl == Whirl::Backward && pair[1].whirl == Whirl::Forward);
             let signed = [-pair[0].frequency, pair[1].frequency];
-            let found = signed.map(|guess| {
-                let line = line_near(&record, dt, guess);
-                // The middle rule turns by 2 atan(w h / 2) a step.
-                (std::f64::consts::PI * line * dt).tan() / (std::f64::consts::PI * dt)
-            });
+            let found = signed.map(|guess| of_middle_rule(line_near(&record, dt, guess), dt));
             println!("{hold:?}: in time {found:.3?} Hz, modes {signed:.3?} Hz");
             for (found, expected) in found.iter().zip(signed) {
                 assert!((found - expected).abs() < 2e-3 * signed[1], "{found} {expected}");

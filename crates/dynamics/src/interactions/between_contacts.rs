@@ -23,6 +23,7 @@ use contact::across::AcrossGrowth;
 use contact::law::BallForces;
 use contact::{AcrossCompliance, BallLaws, BySide, ContactLaw, Meridian};
 
+use super::contact_damping::Viscous;
 use super::discrete_gradient::{
     BallLengths, BallMeans, ContactScheme, ContactTangent, drop_pull, mean_direction, mean_forces, outer,
     size, unit,
@@ -76,7 +77,7 @@ impl BallContacts {
         &self,
         lengths: &BallLengths,
         (scheme, weight): (ContactScheme, f64),
-        viscous: Option<BySide<[f64; 2]>>,
+        viscous: Option<BySide<Viscous>>,
     ) -> BallMeans {
         if self.across.is_none() {
             let laws = self.at(0.0);

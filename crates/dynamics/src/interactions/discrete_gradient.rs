@@ -9,8 +9,10 @@
 //! With damping ([`super::contact_damping`]) the sum is never tensile.
 
 use contact::law::BallForces;
-use contact::{BallLaws, ContactLaw};
+use contact::{BallLaws, BySide, ContactLaw};
 use serde::Deserialize;
+
+use super::contact_damping::Viscous;
 
 /// Relative change of the approach below which the mean force is integrated instead of differenced: the difference
 /// would lose digits, and three Gauss points are exact to round-off there.
@@ -46,6 +48,8 @@ pub struct MeanForce {
     pub tangent: ContactTangent,
     /// Energy lost to contact damping in this step, J.
     pub loss: f64,
+    /// Part of it that what moves the balls round brings, J.
+    pub passing_work: f64,
     /// Energy lost by moving the force to the weighted time, J.
     pub numerical_loss: f64,
 }
@@ -192,13 +196,13 @@ impl BallLengths {
 }
 
 /// Mean forces over a step, of the laws at the mean of both x and at the x of either end. `weight` is that of the
-/// start, the integrator's alpha_f; `viscous` what [`viscous`](super::contact_damping::viscous) gives for each contact,
-/// if there is damping.
+/// start, the integrator's alpha_f; `viscous` what damping does to each contact, if there is any
+/// ([`super::contact_damping::StepDamping`]).
 pub fn mean_forces(
     (laws, ends): (&BallLaws, &[BallLaws; 2]),
     lengths: &BallLengths,
     (scheme, weight): (ContactScheme, f64),
-    viscous: Option<[[f64; 2]; 2]>,
+    viscous: Option<BySide<Viscous>>,
 ) -> BallMeans {
     let [d0, d1] = lengths.approaches();
     let means = match scheme {
@@ -241,7 +245,7 @@ pub fn mean_force(
     touching: f64,
     l: [[f64; 2]; 2],
     scheme: ContactScheme,
-    viscous: Option<[f64; 2]>,
+    viscous: Option<Viscous>,
 ) -> MeanForce {
     let [d0, d1] = l.map(|l| size(l) - touching);
     let normal = match scheme {
@@ -255,12 +259,12 @@ pub fn mean_force(
 }
 
 /// Mean force of a contact with a viscous force that depends on the elastic one: `viscous` gets that and its derivative
-/// with respect to |l1|, and the change of |l|, and gives the same of the viscous one.
+/// with respect to |l1|, and the change of |l|.
 pub fn mean_force_with(
     law: &ContactLaw,
     touching: f64,
     l: [[f64; 2]; 2],
-    viscous: impl Fn([f64; 2], f64) -> [f64; 2],
+    viscous: impl Fn([f64; 2], f64) -> Viscous,
 ) -> MeanForce {
     let [d0, d1] = l.map(|l| size(l) - touching);
     let normal = mean_normal(law, d0, d1);
@@ -272,27 +276,29 @@ pub fn mean_force_with(
 fn along_lengths(
     [l0, l1]: [[f64; 2]; 2],
     [mut normal, mut stiffness]: [f64; 2],
-    viscous: Option<[f64; 2]>,
+    viscous: Option<Viscous>,
     change: f64,
 ) -> (MeanForce, bool) {
     let total = size(l0) + size(l1);
     let end = unit(l1);
-    let (mut loss, mut pulls) = (0.0, false);
-    if let Some([force, slope]) = viscous {
+    let (mut loss, mut passing_work, mut pulls) = (0.0, 0.0, false);
+    if let Some(viscous) = viscous {
         let elastic = normal;
-        normal += force;
-        stiffness += slope;
+        normal += viscous.force;
+        stiffness += viscous.slope;
         if normal < 0.0 {
             (normal, stiffness) = (0.0, 0.0);
             pulls = true;
         }
-        loss = (normal - elastic) * change;
+        passing_work = (normal - elastic) * viscous.passing;
+        loss = (normal - elastic) * change + passing_work;
     }
     let mean = mean_direction([l0, l1]);
     let mut result = MeanForce {
         force: [normal * mean[0], normal * mean[1]],
         tangent: [[0.0; 2]; 2],
         loss,
+        passing_work,
         numerical_loss: 0.0,
     };
     for i in 0..2 {

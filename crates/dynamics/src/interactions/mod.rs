@@ -2,6 +2,8 @@
 
 pub mod between_contacts;
 pub mod cage;
+mod carried_site;
+pub mod closing_contact;
 pub mod contact_damping;
 mod contact_ends;
 pub mod discrete_gradient;

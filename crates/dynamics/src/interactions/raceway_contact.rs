@@ -14,14 +14,14 @@ use contact::{AcrossCompliance, BySide, ContactLaw, Meridian, NodalWeights, Side
 use timer::SharedLaps;
 
 use super::between_contacts::{BallContacts, of_other};
-use super::contact_damping::{ContactDamping, viscous};
+use super::contact_damping::{ContactDamping, StepDamping};
 use super::discrete_gradient::{BallLengths, BallMeans, ContactScheme, ContactTangent};
 use super::strip_contact::{Lateral, StripSite};
 use crate::model::Model;
 use crate::mounting::Mounting;
 use crate::surfaces::{Strips, SurfacePlace};
 use crate::system::{
-    BodyId, CarriedCircle, Character, Circle, Interaction, Lengths, Link, LinkForces, LinkRows, LinkTerm,
+    BodyId, CarriedCircle, Character, Interaction, Lengths, Link, LinkForces, LinkRows, LinkTerm,
 };
 
 /// One ball on one raceway.
@@ -49,6 +49,8 @@ pub struct Site {
     pub unevenness: Option<Arc<Unevenness>>,
     /// Its strips, where the scene asks for them; the law then brings only its compliances.
     pub strips: Option<Strips>,
+    /// How fast it closes because the ball passes along a ring that is displaced, m/s; 0 where nothing damps.
+    pub passing: f64,
     /// How it is mounted at the start and at the end of a step during which temperatures change; None: as it is here.
     pub ends: Option<[MountedEnd; 2]>,
 }
@@ -98,6 +100,7 @@ impl Site {
             across: model.sphere.across,
             unevenness: None,
             strips: model.surfaces.at(ball, side, SurfacePlace::at_start(azimuth)),
+            passing: 0.0,
             ends: None,
         }
     }
@@ -115,25 +118,12 @@ impl Site {
         }
     }
 
-    /// Motion of the groove centre per unit of each dof of what carries the ring (tilts in rad).
-    pub fn carrier_rows(&self) -> [Meridian; 5] {
-        let (sin, cos) = self.azimuth.sin_cos();
-        [
-            [cos, 0.0],
-            [sin, 0.0],
-            [0.0, 1.0],
-            [0.0, self.lever * sin],
-            [0.0, -self.lever * cos],
-        ]
-        .map(Meridian::from)
-    }
-
-    /// The circle of groove centres.
-    pub fn circle(&self) -> Circle {
-        let (sin, cos) = self.azimuth.sin_cos();
-        Circle {
-            azimuth: [cos, sin],
-            radius: self.lever,
+    /// Its damping over a step of `dt` seconds.
+    fn damping<'d>(&self, law: &'d ContactDamping, dt: f64) -> StepDamping<'d> {
+        StepDamping {
+            law,
+            dt,
+            passing: self.passing * dt,
         }
     }
 
@@ -373,11 +363,12 @@ impl RacewayContacts {
             l: [0, 1].map(|k| lengths.of::<2>(2 * ball + k)),
         };
         let places: Vec<BallLengths> = self.balls().enumerate().map(at).collect();
-        let damping = means.damping.as_ref().map(|damping| {
+        let damping = means.damping.as_ref().map(|law| {
             costs.time("contact_damping", || {
-                let of_ball =
-                    |at: &BallLengths| [0, 1].map(|k| viscous(damping, means.dt, at.touching[k], at.l[k]));
-                places.iter().map(of_ball).collect::<Vec<_>>()
+                let of_ball = |(sites, at): (&BallSites, &BallLengths)| {
+                    [0, 1].map(|k| sites[k].damping(law, means.dt).viscous(at.touching[k], at.l[k]))
+                };
+                self.balls().zip(&places).map(of_ball).collect::<Vec<_>>()
             })
         });
         let scheme = (means.scheme, means.weight);
@@ -388,7 +379,7 @@ impl RacewayContacts {
                 let mut found = contacts(sites).mean_forces(at, scheme, viscous(ball));
                 for (k, site) in sites.iter().enumerate() {
                     if let Some(strips) = site.strip_site() {
-                        let damping = means.damping.as_ref().map(|damping| (damping, means.dt));
+                        let damping = means.damping.as_ref().map(|law| site.damping(law, means.dt));
                         found.contacts[k] = strips.mean_force(at.l[k].map(Meridian::from), scheme, damping);
                     }
                 }

@@ -250,6 +250,7 @@ fn finish_contacts(next: &mut MotionState, parts: &BearingParts, solution: &Step
         next.angles[index] = last.angle;
         next.forces[index] = solution.forces[index].force.into();
         next.ledger.contact_loss += solution.forces[index].loss;
+        next.ledger.patch_work += solution.forces[index].passing_work;
         next.ledger.numerical_loss += solution.forces[index].numerical_loss;
         if let Some(dead) = parts.contacts.dead.get(index) {
             // On the ring and, with the opposite sign, on the ball.

@@ -8,7 +8,7 @@ use ring::ElasticStep;
 use super::free_state::{ContactTraction, FreeState};
 use super::ledger::FrictionLedger;
 use super::part::RingSteps;
-use super::place::Course;
+use super::place::{Course, PassedRings};
 use super::ring_course::RingCourse;
 use super::run::Motion;
 use super::solve::StepSolution;
@@ -128,6 +128,7 @@ impl Motion<'_> {
                 time,
                 azimuths: balls.map(|ball| self.ball_azimuth(ball, time)).collect(),
                 is_free: false,
+                passed: self.passed(state, span),
                 start: span.at(0.0),
                 end: span.at(1.0),
             };
@@ -139,9 +140,22 @@ impl Motion<'_> {
                 .map(|ball| free.azimuth(ball) + half * free.orbit(ball))
                 .collect(),
             is_free: true,
+            passed: None,
             start: span.at(0.0),
             end: span.at(1.0),
         }
+    }
+
+    /// How balls on the course of the cage pass an inner ring that goes on with the shaft as that moves, and an outer
+    /// one that stays; None where nothing damps.
+    fn passed(&self, state: &MotionState, span: PartSpan) -> Option<PassedRings> {
+        self.settings.contact_damping.as_ref()?;
+        let ahead = (1.0 - self.settings.integrator.alpha_f) * span.dt;
+        let shaft = std::array::from_fn(|i| state.shaft[i] + ahead * state.shaft_velocity[i]);
+        let [from, to] = [0.0, 1.0].map(|share| self.cage_angle(span.at(share)));
+        let orbit = (to - from) / span.dt;
+        let carriers = [shaft, [0.0; 5]];
+        (orbit != 0.0).then_some(PassedRings { orbit, carriers })
     }
 
     /// Acceleration of all that falls, m/s^2.

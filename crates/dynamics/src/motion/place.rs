@@ -13,7 +13,7 @@
 use std::borrow::Cow;
 
 use contact::patch_shape::PatchShape;
-use contact::{NodalWeights, Patch, Side};
+use contact::{BySide, Meridian, NodalWeights, Patch, Side};
 use rayon::prelude::*;
 
 use super::run::Motion;
@@ -52,10 +52,32 @@ pub(super) struct Course {
     pub azimuths: Vec<f64>,
     /// Whether contacts are those of free balls, with traction and slope.
     pub is_free: bool,
+    /// How balls pass the rings, where that damps.
+    pub passed: Option<PassedRings>,
     /// Start of the part, s.
     pub start: f64,
     /// Its end, s.
     pub end: f64,
+}
+
+/// How balls pass along rings that what carries them displaces.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct PassedRings {
+    /// Angular speed of the balls round the axis, rad/s.
+    pub orbit: f64,
+    /// Displacement of both carriers at the weighted time, as it is expected.
+    pub carriers: BySide<[f64; 5]>,
+}
+
+impl PassedRings {
+    /// How fast a contact at a contact angle closes, m/s: l is to the ball, so it shrinks where the groove comes near.
+    fn rate(&self, site: &Site, angle: f64) -> f64 {
+        let growth = site.carrier_growth().into_iter();
+        let growth = growth.zip(self.carriers[site.side.index()]);
+        let moved = growth.fold(Meridian::default(), |sum, (row, x)| sum + row.map(|r| r * x));
+        let normal = Meridian::new(angle.cos(), angle.sin()).map(|x| site.side.sign() * x);
+        -self.orbit * normal.dot(moved)
+    }
 }
 
 /// The mounting in the middle of a part and, where temperatures change, at its ends.
@@ -190,6 +212,9 @@ impl Motion<'_> {
         let (ball, side) = (index / 2, Side::BOTH[index % 2]);
         let azimuth = course.azimuths[ball];
         let mut site = Site::new(model, &mounting.middle, ball, side, azimuth);
+        if let Some(passed) = &course.passed {
+            site.passing = passed.rate(&site, angle);
+        }
         let (Some(ring), Some(moving)) = (model.ring(side), &self.rings[side.index()]) else {
             mounting.place(model, &mut site, None);
             return Ok(Placed {

@@ -250,6 +250,7 @@ impl Motion<'_> {
                 .map(|ball| self.ball_azimuth(ball, time))
                 .collect(),
             is_free: false,
+            passed: None,
             start: time,
             end: time,
         };

@@ -141,6 +141,7 @@ pub fn relative(a: f64, b: f64) -> f64 {
 pub mod finite;
 pub mod graded;
 pub mod harris;
+pub mod lines;
 pub mod mounting;
 pub mod rings;
 pub mod worn;

@@ -14,6 +14,7 @@
 use contact::ContactLaw;
 
 use super::design::Cage;
+use crate::interactions::contact_damping::Viscous;
 use crate::interactions::discrete_gradient::{MeanForce, mean_force_with};
 
 /// Speed of a first touch at least, m/s: what begins to touch at rest has none. Below it impacts lose less than they
@@ -84,9 +85,13 @@ impl Impact {
 
     /// Mean damping force over a step of `dt`, N, and its derivative with respect to the overlap at its end, from the
     /// same of the elastic force and the change of the overlap.
-    fn damping(&self, [mean, slope]: [f64; 2], change: f64, dt: f64) -> [f64; 2] {
+    fn damping(&self, [mean, slope]: [f64; 2], change: f64, dt: f64) -> Viscous {
         let rate = self.dissipation / self.speed / dt;
-        [rate * mean * change, rate * (mean + slope * change)]
+        Viscous {
+            force: rate * mean * change,
+            slope: rate * (mean + slope * change),
+            passing: 0.0,
+        }
     }
 
     /// Energy stored at an overlap, J.
@@ -224,7 +229,7 @@ mod tests {
                         } else {
                             (energy(to) - energy(from)) / change
                         };
-                        (elastic + impact.damping([elastic, 0.0], change, dt)[0]).max(0.0)
+                        (elastic + impact.damping([elastic, 0.0], change, dt).force).max(0.0)
                     };
                     rebound((mass, speed), dt, (4.0 * steps) as usize, force)
                 };

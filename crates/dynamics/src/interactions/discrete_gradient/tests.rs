@@ -1,6 +1,6 @@
 //! Forces over a step: work, orders, pulls.
 
-use super::super::contact_damping::{ContactDamping, viscous};
+use super::super::contact_damping::{ContactDamping, StepDamping, Viscous};
 use super::*;
 
 const LAW: ContactLaw = ContactLaw {
@@ -102,8 +102,13 @@ fn the_weighted_discrete_gradient_only_takes_energy() {
     }
 }
 
-fn damped(damping: Option<&ContactDamping>, lengths: &BallLengths) -> Option<[[f64; 2]; 2]> {
-    damping.map(|d| lengths.l.map(|l| viscous(d, 1e-5, TOUCHING, l)))
+fn step(law: &ContactDamping, dt: f64) -> StepDamping<'_> {
+    let passing = 3e-9;
+    StepDamping { law, dt, passing }
+}
+
+fn damped(damping: Option<&ContactDamping>, lengths: &BallLengths) -> Option<[Viscous; 2]> {
+    damping.map(|d| lengths.l.map(|l| step(d, 1e-5).viscous(TOUCHING, l)))
 }
 
 /// Wrong: Newton would use a wrong tangent. Difference quotients, all schemes.
@@ -171,7 +176,7 @@ fn damping_only_takes_energy_and_never_pulls() {
     };
     for laws in balls() {
         for lengths in cases() {
-            let viscous = lengths.l.map(|l| viscous(&damping, 1e-6, TOUCHING, l));
+            let viscous = lengths.l.map(|l| step(&damping, 1e-6).viscous(TOUCHING, l));
             let found = mean_forces((&laws, &[laws; 2]), &lengths, CONSERVING, Some(viscous));
             for (f, l) in found.contacts.iter().zip(lengths.l) {
                 assert!(f.loss >= 0.0, "{}", f.loss);

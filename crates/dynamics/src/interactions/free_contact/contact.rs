@@ -9,7 +9,7 @@ use super::place::{Bodies, ContactFrame, GrooveCircle, SlipJets, Standing, frame
 use super::ring_step::{ElasticPlace, Middle, RingStep, SlopeForce};
 use super::rolling_surface::{OverSurface, RollingSurface, StripTerms};
 use super::surface_force::{SurfaceForce, add_surface, over_surface};
-use crate::interactions::contact_damping::{ContactDamping, viscous};
+use crate::interactions::contact_damping::{ContactDamping, StepDamping};
 use crate::interactions::discrete_gradient::{ContactScheme, MeanForce, mean_force};
 use crate::interactions::traction::{Ellipse, Resultant, Slip, Traction};
 
@@ -189,12 +189,21 @@ impl ContactStep {
         self.ring.elastic.map_or([Jet::default(); 2], of)
     }
 
+    /// Its lengths have the passing of the ball in them.
+    fn step_damping(&self) -> Option<StepDamping<'_>> {
+        let law = self.damping.as_ref()?;
+        Some(StepDamping {
+            law,
+            dt: self.dt,
+            passing: 0.0,
+        })
+    }
+
     fn normal_force(&self, start: &Standing, end: &Standing) -> MeanForce {
         let reach = [start.reach, end.reach].map(|l| l.map(|x| x.value));
         let damping = self
-            .damping
-            .as_ref()
-            .map(|damping| viscous(damping, self.dt, self.touching, reach));
+            .step_damping()
+            .map(|damping| damping.viscous(self.touching, reach));
         mean_force(&self.law, self.touching, reach, self.scheme, damping)
     }
 
@@ -209,7 +218,7 @@ impl ContactStep {
             touching: self.touching,
             sign: self.sign,
             scheme: self.scheme,
-            damping: self.damping.as_ref().map(|damping| (damping, self.dt)),
+            damping: self.step_damping(),
         };
         let surface = self.surface.as_ref()?;
         Some(over_surface(surface, terms, &self.ring, course, middle))

@@ -43,7 +43,7 @@ use contact::{Meridian, SeenMeridian};
 use super::jet::Jet;
 use super::orientation::{Quaternion, in_ball, turned};
 use super::place::Standing;
-use crate::interactions::contact_damping::ContactDamping;
+use crate::interactions::contact_damping::StepDamping;
 use crate::interactions::discrete_gradient::{ContactScheme, MeanForce};
 use crate::interactions::strip_contact::{StripSite, force_on_ring};
 use crate::surfaces::{Strips, SurfacePlace};
@@ -114,8 +114,8 @@ pub(super) struct StripTerms<'c> {
     pub sign: f64,
     /// How forces are evaluated.
     pub scheme: ContactScheme,
-    /// Damping along the normal, and the step, s.
-    pub damping: Option<(&'c ContactDamping, f64)>,
+    /// Damping along the normal.
+    pub damping: Option<StepDamping<'c>>,
 }
 
 /// A contact over a step, with where it stands on the surfaces at the start, half-way and at the end.

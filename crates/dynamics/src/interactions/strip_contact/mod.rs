@@ -21,7 +21,7 @@ use contact::across::sinc;
 use contact::law::ContactForce;
 use contact::{ContactLaw, Meridian, StripForce, StripLine};
 
-use super::contact_damping::{ContactDamping, coefficient};
+use super::contact_damping::{StepDamping, coefficient};
 use super::discrete_gradient::{
     ContactScheme, ContactTangent, GAUSS, MeanForce, drop_pull, mean_direction, size, unit,
 };
@@ -124,22 +124,21 @@ impl<'s> StripSite<'s> {
         (self.sign * l.axial).atan2(self.sign * l.radial)
     }
 
-    /// Mean force over a step between these lengths, m. `weight` is that of the start; `damping` acts over a step of so
-    /// many seconds.
+    /// Mean force over a step between these lengths, m. `weight` is that of the start.
     pub fn mean_force(
         &self,
         l: [Meridian; 2],
         (scheme, weight): (ContactScheme, f64),
-        damping: Option<(&ContactDamping, f64)>,
+        damping: Option<StepDamping<'_>>,
     ) -> MeanForce {
         let step = StripStep::new(self, l);
         let mut mean = match scheme {
             ContactScheme::DiscreteGradient => step.discrete_gradient(),
             ContactScheme::Pointwise => step.weighted(weight),
         };
-        let loss = damping.map_or(0.0, |(damping, dt)| step.add_damping(damping, dt, &mut mean));
+        let [loss, passing_work] = damping.map_or([0.0; 2], |damping| step.add_damping(damping, &mut mean));
         let mut result = step.force(&mean);
-        result.loss = loss;
+        (result.loss, result.passing_work) = (loss, passing_work);
         if scheme == ContactScheme::DiscreteGradient && weight != 0.5 {
             step.add_change(0.5 - weight, &mut result);
         }
@@ -309,8 +308,8 @@ impl<'s> StripStep<'s> {
         sum
     }
 
-    /// Adds contact damping along the normal; a sum never pulls. Returns the loss, J.
-    fn add_damping(&self, damping: &ContactDamping, dt: f64, mean: &mut MeanGradient) -> f64 {
+    /// Adds contact damping along the normal; a sum never pulls. Returns the loss, and what passing has of it, J.
+    fn add_damping(&self, damping: StepDamping<'_>, mean: &mut MeanGradient) -> [f64; 2] {
         let [start, end] = self.ends;
         let approach = |found: &StripForce, g: f64| {
             let law = &self.site.strips.surface.law;
@@ -328,17 +327,18 @@ impl<'s> StripStep<'s> {
         } else {
             0.0
         };
-        let [c, slope] = coefficient(damping, 0.5 * (e0 + e1));
+        let [c, slope] = coefficient(damping.law, 0.5 * (e0 + e1));
         let (change, elastic) = (self.change(0), mean.values[0]);
-        let rate = change / dt;
+        let rate = (change + damping.passing) / damping.dt;
         mean.values[0] += c * rate;
-        mean.growth[0][0] += c / dt + 0.5 * slope * rate * growth * end.tangent[0][0];
+        mean.growth[0][0] += c / damping.dt + 0.5 * slope * rate * growth * end.tangent[0][0];
         mean.growth[0][1] += 0.5 * slope * rate * growth * end.tangent[0][1];
         if mean.values[0] < 0.0 {
             mean.values[0] = 0.0;
             mean.growth[0] = [0.0; 2];
         }
-        (mean.values[0] - elastic) * change
+        let viscous = mean.values[0] - elastic;
+        [viscous * (change + damping.passing), viscous * damping.passing]
     }
 
     /// The vectors that give the changes of |l| and alpha, and the force of mean gradients along them.

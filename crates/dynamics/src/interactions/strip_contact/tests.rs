@@ -6,6 +6,7 @@ use contact::surface::{Heights, Profiles};
 use contact::{BallLaws, BearingGeometry, HertzContact, Side, StripLaw, StripSurface};
 
 use super::*;
+use crate::interactions::contact_damping::ContactDamping;
 use crate::interactions::discrete_gradient::{BallLengths, mean_forces};
 use crate::surfaces::{SurfacePlace, Surfaces};
 
@@ -99,9 +100,14 @@ fn a_smooth_groove_has_the_means_of_hertz() {
         across: 0.0,
         stiffest: f64::INFINITY,
     };
-    let damping = ContactDamping {
+    let law = ContactDamping {
         coefficient: 50.0,
         full_approach: 4e-6,
+    };
+    let damping = StepDamping {
+        law: &law,
+        dt: 1e-5,
+        passing: 3e-9,
     };
     for l in paths() {
         let lengths = BallLengths {
@@ -113,9 +119,9 @@ fn a_smooth_groove_has_the_means_of_hertz() {
             (ContactScheme::DiscreteGradient, 0.3),
             (ContactScheme::Pointwise, 0.4),
         ] {
-            let viscous = [crate::interactions::contact_damping::viscous(&damping, 1e-5, TOUCHING, l); 2];
+            let viscous = [damping.viscous(TOUCHING, l); 2];
             let exact = mean_forces((&ball, &[ball; 2]), &lengths, scheme, Some(viscous)).contacts[0];
-            let found = site.mean_force(l.map(Meridian::from), scheme, Some((&damping, 1e-5)));
+            let found = site.mean_force(l.map(Meridian::from), scheme, Some(damping));
             for i in 0..2 {
                 let size = size(exact.force).max(1e-3);
                 assert!(
@@ -132,9 +138,14 @@ fn a_smooth_groove_has_the_means_of_hertz() {
 #[test]
 fn tangents_are_derivatives() {
     let strips = strips(1.0, -0.5..=0.36);
-    let damping = ContactDamping {
+    let law = ContactDamping {
         coefficient: 50.0,
         full_approach: 1e-6,
+    };
+    let damping = StepDamping {
+        law: &law,
+        dt: 1e-5,
+        passing: 3e-9,
     };
     let law = contact_law(2e-9);
     let site = StripSite::new(&strips, &law, TOUCHING, 1.0);
@@ -143,10 +154,7 @@ fn tangents_are_derivatives() {
         (ContactScheme::DiscreteGradient, 0.3),
         (ContactScheme::Pointwise, 0.4),
     ];
-    for (scheme, damping) in schemes
-        .into_iter()
-        .flat_map(|s| [(s, None), (s, Some((&damping, 1e-5)))])
-    {
+    for (scheme, damping) in schemes.into_iter().flat_map(|s| [(s, None), (s, Some(damping))]) {
         for l in paths() {
             let at = |l: [[f64; 2]; 2]| site.mean_force(l.map(Meridian::from), scheme, damping);
             let (found, h) = (at(l), 1e-11);

@@ -1,0 +1,85 @@
+//! What the way of the balls round their bearing adds to its matrices.
+//!
+//! A ball goes round with the speed W of the cage, so what it meets changes even where nothing moves. With the motion
+//! of the balls as a function of azimuth and time, x(psi, t), and the approaches g(psi, t) of their contacts, it has
+//!
+//! ```text
+//! x'' = d2x/dt2 + 2 W d2x/(dt dpsi) + W^2 d2x/dpsi2,      g' = dg/dt + W dg/dpsi
+//! ```
+//!
+//! The first are the gyroscopic moment and the centrifugal force of balls that go round in a plane which tilts. With
+//! contact damping c the second is a stiffness c W that turns: it takes from the drive of the balls and feeds motions
+//! that go round along with them, more slowly than they do, as damping in a rotor does.
+//!
+//! d/dpsi is that of the trigonometric polynomial through the balls (Trefethen, Spectral Methods in MATLAB, 2000, ch.
+//! 3), of balls that nothing touches 0. It is exact where a shaft moves or tilts on three or more balls alike, and
+//! leaves out that matrices change as single balls pass. Elastic rings give way without it, as in motion.
+
+use std::f64::consts::TAU;
+
+use crate::stiffness::{Linearisation, N_SHAFT};
+
+impl Linearisation {
+    /// The same with balls of this mass, kg, that go round with `speed`, rad/s.
+    pub fn going_round(mut self, ball_mass: f64, speed: f64) -> Linearisation {
+        if speed == 0.0 {
+            return self;
+        }
+        let n = self.n;
+        let slopes = self.slopes();
+        let mut damping = self.damping.take().unwrap_or_else(|| vec![0.0; n * n]);
+        let balls = self.n_balls;
+        for i in 0..balls {
+            for j in 0..balls {
+                let twice: f64 = (0..balls)
+                    .map(|k| slopes[balls * i + k] * slopes[balls * k + j])
+                    .sum();
+                for dof in 0..2 {
+                    let at = n * (N_SHAFT + 2 * i + dof) + N_SHAFT + 2 * j + dof;
+                    damping[at] += 2.0 * ball_mass * speed * slopes[balls * i + j];
+                    self.stiffness[at] += ball_mass * speed * speed * twice;
+                }
+            }
+        }
+        self.add_passing(&slopes, speed);
+        self.damping = Some(damping);
+        self
+    }
+
+    /// d/dpsi over the balls, row-major.
+    fn slopes(&self) -> Vec<f64> {
+        let (n, balls) = (self.n, self.n_balls);
+        let touched: Vec<bool> = (N_SHAFT..N_SHAFT + 2 * balls)
+            .step_by(2)
+            .map(|i| (0..n).any(|j| j != i && self.stiffness[n * i + j] != 0.0))
+            .collect();
+        let entry = |k: usize| {
+            let (i, j) = (k / balls, k % balls);
+            if i == j || !touched[i] || !touched[j] {
+                return 0.0;
+            }
+            let sign = if (i + j).is_multiple_of(2) { 0.5 } else { -0.5 };
+            let half = 0.5 * TAU * (i as f64 - j as f64) / balls as f64;
+            match balls.is_multiple_of(2) {
+                true => sign / half.tan(),
+                false => sign / half.sin(),
+            }
+        };
+        (0..balls * balls).map(entry).collect()
+    }
+
+    /// Damping of contacts that close because their balls pass.
+    fn add_passing(&mut self, slopes: &[f64], speed: f64) {
+        let (n, balls) = (self.n, self.n_balls);
+        for (site, contact) in self.closing.iter().enumerate().filter(|(_, c)| c.damping > 0.0) {
+            for (other, met) in self.closing.iter().enumerate().skip(site % 2).step_by(2) {
+                let rate = contact.damping * speed * slopes[balls * (site / 2) + other / 2];
+                for &(row, a) in contact.rows.iter().chain(&contact.of_ring) {
+                    for &(column, b) in &met.rows {
+                        self.stiffness[n * row + column] += rate * a * b;
+                    }
+                }
+            }
+        }
+    }
+}
