@@ -139,9 +139,11 @@ fn the_line_of_a_mode_goes_through_the_sections_of_an_elastic_shaft() {
     );
 }
 
+/// Weights across the seat.
+const SIMPSON: [f64; 9] = [1.0, 4.0, 2.0, 4.0, 2.0, 4.0, 2.0, 4.0, 1.0];
+
 /// Mean motion across the axis of the front seat beside the shaft, in the frame of its ring, by Simpson's rule, m.
 fn mean_of_seat(dir: &Dir) -> [f64; 2] {
-    const SIMPSON: [f64; 9] = [1.0, 4.0, 2.0, 4.0, 2.0, 4.0, 2.0, 4.0, 1.0];
     let table = Table::read(dir, "found/front/seat_inner.csv");
     let columns = ["azimuth_rad", "radial_m", "tangential_m"].map(|name| table.column(name));
     let [azimuth, radial, tangential] = columns;
@@ -170,6 +172,49 @@ fn front_beside_shaft(dir: &Dir) -> Vec<[f64; 2]> {
 /// Distance of two points across the axis.
 fn apart(a: [f64; 2], b: [f64; 2]) -> f64 {
     (a[0] - b[0]).hypot(a[1] - b[1])
+}
+
+/// Force of the front seat's pressure and shear on its ring across the axis, N, by Simpson's rule on a bore of 50 mm.
+fn force_of_seat(dir: &Dir) -> [f64; 2] {
+    let table = Table::read(dir, "found/front/seat_inner.csv");
+    let columns = ["azimuth_rad", "z_m", "pressure_pa", "shear_tangential_pa"].map(|name| table.column(name));
+    let [azimuth, z, pressure, shear] = columns;
+    let area = std::f64::consts::TAU * 0.025 * (z[8] - z[0]);
+    let (mut sum, mut weights) = ([0.0; 2], 0.0);
+    for (i, azimuth) in azimuth.iter().enumerate() {
+        let (sin, cos) = azimuth.sin_cos();
+        let weight = SIMPSON[i % 9];
+        sum[0] += weight * (pressure[i] * cos - shear[i] * sin);
+        sum[1] += weight * (pressure[i] * sin + shear[i] * cos);
+        weights += weight;
+    }
+    sum.map(|sum| area * sum / weights)
+}
+
+/// Wrong: pressure of a shaft on its ring would pass for a pull. It stands against the forces of the balls on the ring.
+#[test]
+fn a_shaft_presses_its_ring_against_the_balls() {
+    let dir = coarse(&[SCENE]);
+    let loads = [
+        "--set",
+        "effects.radial_force={value = \"2 kN\", direction = \"30 deg\"}",
+    ];
+    let run = dir.raceway(&[&["run", SCENE, "--out", "found"][..], &loads, &FEW].concat());
+    assert_eq!(run.code, Some(0), "{}", run.stderr);
+    let balls = Table::read(&dir, "found/front/balls.csv");
+    let columns = ["azimuth_rad", "inner_force_n", "inner_contact_angle_rad"].map(|name| balls.column(name));
+    let [azimuth, force, angle] = columns;
+    let mut pressed = [0.0; 2];
+    for (azimuth, (force, angle)) in azimuth.iter().zip(force.iter().zip(&angle)) {
+        let (sin, cos) = azimuth.sin_cos();
+        pressed[0] += force * angle.cos() * cos;
+        pressed[1] += force * angle.cos() * sin;
+    }
+    let found = force_of_seat(&dir);
+    assert!(
+        apart(found, pressed) < 0.05 * apart(pressed, [0.0; 2]),
+        "{found:?} {pressed:?}"
+    );
 }
 
 /// Wrong: the line of a spindle that turns under loads that stand would turn with it. Three places over half a turn;

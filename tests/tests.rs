@@ -74,6 +74,7 @@ mod stress;
 mod stress_histories;
 mod stress_life;
 mod study;
+mod study_files;
 mod study_jobs;
 mod surfaces;
 mod sweeps;

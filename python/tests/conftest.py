@@ -40,6 +40,9 @@ class Runs:
     def statics(self) -> raceway.Results:
         return self.of("statics", "7010c_radial_tilt_locked.toml", {"output.stress": "nodal"})
 
+    def pair(self) -> raceway.Results:
+        return self.of("pair", "7010c_spindle_pair.toml", {})
+
     def sweep(self) -> raceway.Results:
         return self.of("sweep", "7010c_preload_sweep.toml", {"sweep.values": ["1 kN", "2 kN", "5 kN"]})
 

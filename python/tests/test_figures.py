@@ -21,6 +21,18 @@ def test_a_figure_round_the_bearing_has_every_ball(runs):
     assert np.allclose(np.sort(angles.data[1].y), np.sort(np.degrees(results.balls["outer_contact_angle_rad"])))
 
 
+def test_bearings_of_a_list_have_lines_of_their_own(runs):
+    results = runs.pair()
+    figure = raceway.figures.round_the_bearing(results)
+    assert [trace.name for trace in figure.data] == ["front inner", "front outer", "rear inner", "rear outer"]
+    own = results.balls[results.balls["bearing"] == "rear"]
+    assert sorted(figure.data[2].y) == sorted(own["inner_force_n"])
+    lines = raceway.figures.history(results, ["x_m"]).data
+    assert len(lines) == results.shaft["position_m"].nunique() and all(len(line.x) == 1 for line in lines)
+    with pytest.raises(raceway.ResultsError, match="several bearings: front, rear; open the folder of one"):
+        results.balls_dataset()
+
+
 def test_a_sweep_is_drawn_against_its_value(runs):
     figure = raceway.figures.history(runs.sweep(), ["inner_force_n"], "balls", ball=3)
     assert list(figure.data[0].x) == [1000.0, 2000.0, 5000.0]

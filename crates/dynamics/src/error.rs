@@ -175,7 +175,8 @@ pub enum DynamicsError {
     },
     /// A ball reached no facet.
     #[error(
-        "ball {ball} is near no facet of the {side} raceway: expected one within a ball radius; check the mesh's place"
+        "ball {ball} is near no facet of the {side} raceway: expected one within a ball radius; use more sectors, as \
+         facets of few lie off the groove, or check the mesh's place"
     )]
     NoFacet {
         /// Ball number, from 0.

@@ -6,7 +6,7 @@ use std::path::{Component, Path, PathBuf};
 
 use anyhow::{Context, anyhow};
 use contact::Side;
-use scene::{FlexibleRing, Scene, StressOutput, difference};
+use scene::{FlexibleRing, Scene, StressOutput, difference, named_files};
 
 /// Scene file, relative to the result folder.
 pub const SCENE_FILE: &str = "scene_file";
@@ -44,6 +44,12 @@ pub fn identity(scene: &Scene) -> anyhow::Result<String> {
     for side in Side::BOTH {
         let mesh = flexible(scene, side).map(mesh_text).transpose()?;
         lines.push(format!("{} {}", side.name(), mesh.unwrap_or_default()));
+    }
+    for (key, path) in named_files(scene)?
+        .into_iter()
+        .filter(|(key, _)| key.starts_with("body."))
+    {
+        lines.push(format!("{key} {}", checksum_text(&path)?));
     }
     let numbers: Vec<u8> = scene.profiles.from_files().flat_map(f64::to_le_bytes).collect();
     if !numbers.is_empty() {
@@ -143,11 +149,12 @@ fn mesh_key(side: Side) -> String {
 }
 
 fn mesh_text(ring: &FlexibleRing) -> anyhow::Result<String> {
-    let (length, crc) = checkpoint::file_checksum(&ring.mesh)?;
-    Ok(format!(
-        "{} ({length} bytes, checksum {crc:08x})",
-        ring.mesh_as_typed
-    ))
+    Ok(format!("{} {}", ring.mesh_as_typed, checksum_text(&ring.mesh)?))
+}
+
+fn checksum_text(path: &Path) -> anyhow::Result<String> {
+    let (length, crc) = checkpoint::file_checksum(path)?;
+    Ok(format!("({length} bytes, checksum {crc:08x})"))
 }
 
 /// The scene file that a step file of the folder `dir` tells of.

@@ -216,7 +216,7 @@ impl SeatState {
     pub fn finish(&self, (dir, bearing): SeatFolder<'_>) -> anyhow::Result<SeatSummary> {
         let points = self.points();
         if Communicator::world().is_root() && !points.is_empty() {
-            let text = table(&points);
+            let text = table(&points, self.side);
             let name = SEAT_TABLES[self.side.index()];
             whole::write(&dir.join(name), text.as_bytes(), |old| whole::holds(old, HEAD))?;
         }
@@ -235,7 +235,7 @@ impl SeatState {
         let share = self.traction.convergence(basis);
         // Rigid motions are of the first order and degree.
         let [harmonics, across] = basis.largest().unwrap_or([1, 1]);
-        let pressures = || points.iter().map(|p| -p.traction[0]);
+        let pressures = || points.iter().map(|p| p.pressure(self.side));
         SeatSummary {
             body: body.name.clone(),
             harmonics,
@@ -316,14 +316,21 @@ impl SeatSummary {
     }
 }
 
-fn table(points: &[SeatPoint]) -> String {
+impl SeatPoint {
+    /// Pressure of the body on the ring, Pa: from outside on an outer ring, from inside on an inner one.
+    fn pressure(&self, side: Side) -> f64 {
+        -side.sign() * self.traction[0]
+    }
+}
+
+fn table(points: &[SeatPoint], side: Side) -> String {
     let mut text = format!("{HEAD}\n");
     for p in points {
-        let [radial, tangential, axial] = p.traction;
+        let [_, tangential, axial] = p.traction;
         let values = [
             p.azimuth,
             p.z,
-            -radial,
+            p.pressure(side),
             tangential,
             axial,
             p.motion[0],

@@ -33,7 +33,11 @@ pub fn advise(question: &Question) -> Result<(), Failure> {
     } else {
         question.study.clone()
     };
-    let report = StudyReport::load(&path)?;
+    let mut report = StudyReport::load(&path)?;
+    let folder = path.parent().filter(|folder| *folder != Path::new(""));
+    let folder = folder.unwrap_or(Path::new(".")).display().to_string();
+    let sets = report.points.iter_mut().flat_map(|point| &mut point.set);
+    sets.for_each(|set| *set = set.replace("{out}", &folder));
     let kind = question.cost.unwrap_or(report.cost);
     let names = asked(&report, question.quantity.as_deref(), &path)?;
     print::line(format_args!(

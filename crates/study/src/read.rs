@@ -174,7 +174,10 @@ pub fn history_difference(a: &[[f64; 2]], b: &[[f64; 2]]) -> anyhow::Result<f64>
         }
     }
     if n < 2 {
-        bail!("its history and that of the reference have {n} times in common; steps must divide each other");
+        bail!(
+            "its history and that of the reference have {n} times in common; expected two or more, of steps that \
+             divide each other in a scene over time"
+        );
     }
     Ok((sum / n as f64).sqrt())
 }

@@ -1,13 +1,16 @@
 //! `point.json`: what became of one point of a study, beside the results of its run.
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, bail};
+use checkpoint::file_checksum;
 use results::about::SOURCE_COMMIT;
 use results::whole;
+use scene::{MeshFiles, Scene, named_files};
 use serde::{Deserialize, Serialize};
 
-use super::plan::{Plan, Point};
+use super::plan::{Plan, Point, arguments};
 
 /// Name of the file in the folder of a point.
 const FILE: &str = "point.json";
@@ -27,6 +30,9 @@ pub struct Record {
     pub set: Vec<String>,
     /// Text of the scene before the arguments.
     pub scene: String,
+    /// Length and checksum of the files that the scene names, by its keys.
+    #[serde(default)]
+    pub files: BTreeMap<String, String>,
     /// Threads of the run.
     pub threads: usize,
     /// Version and commit of the program.
@@ -85,7 +91,16 @@ pub fn find(plan: &Plan, point: &Point, out: &Path) -> anyhow::Result<Option<Rec
         ),
         ("another number of threads", record.threads != plan.threads),
     ];
-    if let Some((what, _)) = changed.iter().find(|(_, is)| *is) {
+    let now = files(plan, &arguments(point, out))?;
+    let file = now
+        .iter()
+        .find(|(key, file)| record.files.get(*key).is_some_and(|old| old != *file));
+    let file = file.map(|(key, _)| format!("other contents of the file of {key}"));
+    let what = changed
+        .iter()
+        .find(|(_, is)| *is)
+        .map(|(what, _)| what.to_string());
+    if let Some(what) = what.or(file) {
         bail!(
             "{} was run with {what} than {} asks for now; choose another --out, or remove that folder to run the point \
              again",
@@ -94,6 +109,16 @@ pub fn find(plan: &Plan, point: &Point, out: &Path) -> anyhow::Result<Option<Rec
         );
     }
     Ok(Some(record))
+}
+
+/// Length and checksum of the files that the scene names with these arguments, by its keys.
+pub fn files(plan: &Plan, set: &[String]) -> anyhow::Result<BTreeMap<String, String>> {
+    let scene = Scene::parse(&plan.scene_text, &plan.scene, set, MeshFiles::MayBeMissing)?;
+    let told = named_files(&scene)?.into_iter().map(|(key, path)| {
+        let (length, crc) = file_checksum(&path)?;
+        Ok((key, format!("{length} bytes, checksum {crc:08x}")))
+    });
+    told.collect()
 }
 
 /// Writes a record: complete or not at all.

@@ -6,6 +6,7 @@
 //! the tasks of a Slurm array, from running the same point. A second one belongs to the run, which ends a moment
 //! after a study that was killed: the next study waits for it.
 
+use std::collections::BTreeMap;
 use std::fs::{File, TryLockError};
 use std::os::unix::process::ExitStatusExt;
 use std::path::Path;
@@ -93,6 +94,7 @@ fn run_point(plan: &Plan, point: &Point, out: &Path) -> Result<(), Failure> {
         name: plan.name(point),
         set: point.set.clone(),
         scene: plan.whole_scene(&set)?,
+        files: BTreeMap::new(),
         threads: plan.threads,
         program: record::program(),
         failure: None,
@@ -103,6 +105,7 @@ fn run_point(plan: &Plan, point: &Point, out: &Path) -> Result<(), Failure> {
     {
         record.failure = Some(failure.text());
     }
+    record.files = record::files(plan, &set)?;
     for repeat in 0..plan.repeats {
         if record.failure.is_some() {
             break;

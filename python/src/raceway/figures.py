@@ -11,6 +11,7 @@ from .errors import MissingPackage, ResultsError
 from .results import Results
 
 if TYPE_CHECKING:
+    import pandas as pd
     import plotly.graph_objects
 
 #: Ending of a column in SI, factor to the unit shown, and that unit; longer endings first.
@@ -46,6 +47,7 @@ def round_the_bearing(
 ) -> plotly.graph_objects.Figure:
     """A quantity of both contacts of every ball against its azimuth, at a step, by default the last one.
 
+    Of the folder of a list of bearings, each bearing has lines of its own.
     `quantity` is a column of the table of balls without its side: `force_n`, `contact_angle_rad`, `peak_pressure_pa`.
     """
     table = results.balls
@@ -57,13 +59,14 @@ def round_the_bearing(
     rows = rows.assign(azimuth_deg=np.degrees(rows["azimuth_rad"]) % 360.0).sort_values("azimuth_deg")
     name, factor, unit = shown(quantity)
     figure = _figure(f"{name} at both contacts, step {number}", "azimuth, deg", f"{name}, {unit}")
-    for side in SIDES:
-        column = _column(results, rows, f"{side}_{quantity}")
-        text = [f"ball {ball}" for ball in rows["ball"]]
-        figure.add_scatter(
-            x=rows["azimuth_deg"], y=factor * column, name=side, mode="lines+markers", text=text,
-            line={"dash": DASHES[side]}, marker={"symbol": MARKERS[side], "size": 8},
-        )  # fmt: skip
+    for place, own in _apart(rows):
+        for side in SIDES:
+            column = _column(results, own, f"{side}_{quantity}")
+            text = [f"ball {ball}" for ball in own["ball"]]
+            figure.add_scatter(
+                x=own["azimuth_deg"], y=factor * column, name=f"{place}{side}", mode="lines+markers", text=text,
+                line={"dash": DASHES[side]}, marker={"symbol": MARKERS[side], "size": 8},
+            )  # fmt: skip
     figure.update_xaxes(range=[-5, 365], dtick=45)
     return figure
 
@@ -71,7 +74,10 @@ def round_the_bearing(
 def history(
     results: Results, columns: Sequence[str], table: str = "shaft", ball: int | None = None
 ) -> plotly.graph_objects.Figure:
-    """Columns of a table over time; of a sweep against the swept value. `ball` chooses the rows of one ball."""
+    """Columns of a table over time; of a sweep against the swept value. `ball` chooses the rows of one ball.
+
+    Of the folder of a list of bearings, each bearing, or place on the shaft, has a line of its own.
+    """
     rows = results.table(table)
     if "ball" in rows:
         rows = rows[rows["ball"] == (0 if ball is None else ball)]
@@ -89,10 +95,20 @@ def history(
     figure = _figure(", ".join(shown(column)[0] for column in columns), f"{x_name}, {x_unit}", label)
     for column in columns:
         name, factor, _ = shown(column)
-        values = factor * _column(results, rows, column)
-        mode = "lines" if len(rows) > 60 else "lines+markers"
-        figure.add_scatter(x=x_factor * _column(results, rows, across), y=values, name=name, mode=mode)
+        for place, own in _apart(rows):
+            values = factor * _column(results, own, column)
+            mode = "lines" if len(own) > 60 else "lines+markers"
+            x = x_factor * _column(results, own, across)
+            figure.add_scatter(x=x, y=values, name=f"{place}{name}", mode=mode)
     return figure
+
+
+def _apart(rows: pd.DataFrame) -> list[tuple[str, pd.DataFrame]]:
+    """The rows of each bearing of a list, or place on its shaft, with what its name begins with."""
+    for column, text in (("bearing", "{} "), ("position_m", "{:.4g} m, ")):
+        if column in rows and rows[column].nunique() > 1:
+            return [(text.format(value), own) for value, own in rows.groupby(column, sort=False)]
+    return [("", rows)]
 
 
 def energy(results: Results) -> plotly.graph_objects.Figure:

@@ -178,6 +178,9 @@ class Results:
     def balls_dataset(self) -> xarray.Dataset:
         """The table of the balls over step and ball, time and the swept value over step."""
         xr = _xarray()
+        if "bearing" in self.balls:
+            names = ", ".join(self.balls["bearing"].unique())
+            raise ResultsError(f"{self.folder} holds the balls of several bearings: {names}; open the folder of one")
         table = self.balls.set_index(["step", "ball"])
         data = xr.Dataset.from_dataframe(table)
         over_steps = [name for name in data if name == "time_s" or "." in str(name)]

@@ -105,6 +105,10 @@ pub struct StripSurface {
 const RAMP_PIECES: usize = 8;
 /// Largest piece of a floor, rad: the curvature of the track, and with it the sag of the ball, changes along it.
 const FLOOR_PIECE: f64 = 0.1;
+/// Distance of the corners of what goes all over the groove, rad: radius and curvature of the track change with them.
+const ALL_OVER_PIECE: f64 = PI / 18.0;
+/// Such corners on either side of the middle: up to 60 deg from it, beyond which no contact stands.
+const ALL_OVER_CORNERS: i32 = 6;
 /// Width of an edge without a ramp, over the width of its spall.
 const SHARP: f64 = 1e-6;
 /// Grid spacings in the length of a spall.
@@ -344,7 +348,8 @@ fn smallest_gap(azimuths: &[f64]) -> f64 {
     azimuths.windows(2).map(|a| a[1] - a[0]).fold(around, f64::min)
 }
 
-/// Contact angles between which w is linear: shoulders, edges of spalls, pieces of dents, angles of tables.
+/// Contact angles between which w is linear: shoulders, edges of spalls, pieces of dents, angles of tables, and pieces
+/// of what goes all over the groove.
 fn corners(range: &RangeInclusive<f64>, section_radius: f64, profiles: &Profiles) -> Vec<f64> {
     let mut angles = vec![*range.start(), *range.end()];
     for spall in &profiles.spalls {
@@ -368,6 +373,11 @@ fn corners(range: &RangeInclusive<f64>, section_radius: f64, profiles: &Profiles
             .flat_map(|dent| dent.corners(section_radius)),
     );
     angles.extend(profiles.tables.iter().flat_map(|table| &table.angles));
+    if !(profiles.waves.is_empty() && profiles.tables.is_empty()) {
+        let middle = 0.5 * (range.start() + range.end());
+        let pieces = -ALL_OVER_CORNERS..=ALL_OVER_CORNERS;
+        angles.extend(pieces.map(|i| middle + ALL_OVER_PIECE * f64::from(i)));
+    }
     angles.retain(|angle| range.contains(angle));
     angles.sort_by(f64::total_cmp);
     angles.dedup_by(|b, a| *b - *a <= 1e-12);

@@ -362,6 +362,40 @@ fn a_ball_turns_its_marks_under_both_raceways() {
     }
 }
 
+/// Wrong: a wave on a ball would be filtered as on a parallel far from the equator, where its slopes are steeper. At
+/// the zero of the wave the raceway meets it too high by slope^2/(2 k_t), k_t = 1/r -+ cos(a)/rho.
+#[test]
+fn a_wave_of_a_ball_is_filtered_as_on_its_equator() {
+    let geometry = BearingGeometry::reference_7010c();
+    let (equator, radius) = (geometry.free_contact_angle(), 0.5 * geometry.ball_diameter);
+    let (order, amplitude) = (12, 5e-7);
+    let profiles = Profiles {
+        waves: vec![Wave {
+            order,
+            amplitude,
+            phase: 0.5 * std::f64::consts::PI,
+        }],
+        ..Profiles::default()
+    };
+    for side in Side::BOTH {
+        let surface = BallSurface::new((&geometry, side), equator, &profiles).unwrap();
+        let curvature = Track::on_ball(&geometry, side, equator).curvature(equator);
+        let slope = order as f64 * amplitude / radius;
+        let expected = -slope * slope / (2.0 * curvature);
+        for off in [0.0, 0.02, -0.05] {
+            let line = surface.missing_at(0.0);
+            let angles = surface.line(&line).angles.to_vec();
+            let i = angles.partition_point(|angle| *angle <= equator + off).max(1) - 1;
+            let share = (equator + off - angles[i]) / (angles[i + 1] - angles[i]);
+            let missing = line[i] + share * (line[i + 1] - line[i]);
+            assert!(
+                (missing / expected - 1.0).abs() < 0.05,
+                "{side:?} {off}: {missing} {expected}"
+            );
+        }
+    }
+}
+
 /// Wrong: a table of a ball would be read the wrong way round where the inner raceway meets it.
 #[test]
 fn a_table_of_a_ball_is_seen_by_both_raceways() {

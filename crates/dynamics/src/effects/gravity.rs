@@ -28,7 +28,7 @@ use ring::{NodeMasses, RingModel};
 const EXAMPLE: &str = r#"[effects.gravity]
 acceleration = "9.81 m/s2"
 direction = [0.0, -1.0, 0.0]    # its length does not matter
-schedule.step = { at = "1 ms" } # optional: its factor over time
+schedule.step = { at = "1 ms" } # optional: its factor over time, as of axial_force
 "#;
 
 /// A gravity beyond a million times the earth's is a slip of the unit, m/s2.

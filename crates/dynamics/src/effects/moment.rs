@@ -11,7 +11,7 @@ use crate::model::{Effect, Model};
 const EXAMPLE: &str = r#"[effects.moment]
 x = "3 N m"
 y = "0 N m"
-schedule.harmonic = { frequency = "50 Hz" }     # optional: its factor over time
+schedule.harmonic = { frequency = "50 Hz" }     # optional: its factor over time, as of axial_force
 "#;
 
 /// The table of a scene.

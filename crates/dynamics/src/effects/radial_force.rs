@@ -14,7 +14,7 @@ use crate::model::{Effect, Model};
 const EXAMPLE: &str = r#"[effects.radial_force]
 value = "1 kN"          # negative points the other way
 direction = "0 deg"     # azimuth, from +x towards +y, fixed in space
-schedule.step = { at = "1 ms" }     # optional: its factor over time
+schedule.step = { at = "1 ms" }     # optional: its factor over time, as of axial_force
 "#;
 
 /// The table of a scene.

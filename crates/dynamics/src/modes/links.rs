@@ -63,13 +63,9 @@ impl VibratingLinks<'_> {
     /// What moves one length of a link. What carries a ring has its dofs by body among the small ones, or in the motion
     /// of a flexible ring, which has that of its partner in it.
     fn growth(&self, link: &Link, row: usize, finite: &Option<FiniteMotion>) -> LengthGrowth {
-        let is_elastic = |term: &LinkTerm| matches!(term.body, BodyId::Elastic(_));
-        let is_ring = link.terms.iter().any(is_elastic);
         let mut growth = LengthGrowth::default();
         for term in link.terms.iter().filter(|term| term.rows[row] != 0.0) {
-            let follows =
-                is_ring && matches!(term.body, BodyId::Lumped(body) if self.carried(body).is_some());
-            if !follows {
+            if !self.is_in_ring(term, link) {
                 self.add(&mut growth, (term.body, term.coordinate), term.rows[row]);
             }
         }
@@ -82,6 +78,15 @@ impl VibratingLinks<'_> {
             }
         }
         growth
+    }
+
+    /// Whether the motion of a term is in that of the elastic ring that its body carries, which the link has too.
+    fn is_in_ring(&self, term: &LinkTerm, link: &Link) -> bool {
+        let BodyId::Lumped(body) = term.body else {
+            return false;
+        };
+        let ring = self.carried(body).and_then(|side| self.parts.elastic(side));
+        ring.is_some_and(|ring| link.terms.iter().any(|other| other.body == BodyId::Elastic(ring)))
     }
 
     /// What finite motions and the loads that follow them add to the stiffness of the tilts under the forces of the

@@ -16,7 +16,7 @@ pub struct CageState {
     pub pockets: Vec<[f64; 2]>,
     /// Mean normal force of the land on both ends, x and y, N.
     pub lands: Vec<[f64; 2]>,
-    /// Torque about the axis on the cage in the last step, N m: of the pockets' friction, of the land.
+    /// Torque about the axis on the cage in the last step, N m: of the pockets, of the land.
     pub torques: [f64; 2],
 }
 

@@ -51,7 +51,7 @@ pub struct CageForce {
     pub friction_work: f64,
     /// Part of it at the slip that friction follows, J.
     pub work_at_slip: f64,
-    /// Torque of friction about the axis on the cage, N m.
+    /// Torque about the axis on the cage, N m: of a land that of its friction, the rest has none.
     pub torque: f64,
     /// Whether it touches at the end.
     pub touches: bool,

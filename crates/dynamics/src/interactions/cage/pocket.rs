@@ -82,10 +82,12 @@ impl CageContact for PocketStep {
         let Some((load, mut found)) = press(&self.impact, self.touching, reach, self.dt) else {
             return CageForce::default();
         };
+        let before = resists[11].value;
         self.add_normal((&start, &last), load, &x, resists);
         if self.rubbing.acts(&found) {
             self.add_friction((&start, &last), load, &x, resists, &mut found);
         }
+        found.torque = before - resists[11].value;
         found
     }
 
@@ -179,7 +181,6 @@ impl PocketStep {
         let force = plus(times(f[0], middle.tangents[0]), times(f[1], middle.tangents[1]));
         let about_ball = cross(middle.lever, force);
         let about_cage = cross(plus(middle.arm, middle.lever), force);
-        found.torque = -about_cage[2].value;
         for i in 0..3 {
             resists[i] = resists[i] - force[i];
             resists[3 + i] = resists[3 + i] - about_ball[i];

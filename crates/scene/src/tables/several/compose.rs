@@ -373,12 +373,20 @@ pub fn apply(document: &mut DocumentMut, argument: &str) -> Result<(), SceneErro
     })
 }
 
-/// Brings what the command line has changed in tables that all bearings share; `left_out` are effects.
+/// Brings what the command line has changed in tables that all bearings share, and takes out what it has taken out;
+/// `left_out` are effects.
 fn copy_shared(list: &DocumentMut, document: &mut DocumentMut, left_out: &[&str]) {
-    for (name, item) in list.iter() {
-        if OF_LIST.contains(&name) || OF_TYPE.contains(&name) || ["body", "include"].contains(&name) {
-            continue;
-        }
+    let is_shared = |name: &str| {
+        !(OF_LIST.contains(&name) || OF_TYPE.contains(&name) || ["body", "include"].contains(&name))
+    };
+    let own = document.iter().map(|(name, _)| name.to_string());
+    let removed: Vec<String> = own
+        .filter(|name| is_shared(name) && !list.contains_key(name))
+        .collect();
+    removed.iter().for_each(|name| {
+        document.remove(name);
+    });
+    for (name, item) in list.iter().filter(|(name, _)| is_shared(name)) {
         let mut item = item.clone();
         if let (true, Some(effects)) = (name == "effects", item.as_table_like_mut()) {
             left_out.iter().for_each(|effect| {

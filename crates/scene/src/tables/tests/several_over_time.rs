@@ -74,3 +74,18 @@ fn bad_lists_over_time_are_refused_with_advice() {
         assert!(found.contains(expected), "found: {found}\nexpected: {expected}");
     }
 }
+
+/// Wrong: a table that the command line takes out would stay in the bearings of a list, without a word.
+#[test]
+fn a_table_that_is_taken_out_is_in_no_bearing() {
+    let lists = Lists::new("taken_out");
+    let more = "[speed]\ninner = \"600 rpm\"\n[output]\ntables_every = 3\n";
+    let text = list(BEAM, more).replace(
+        "[static]\n",
+        "[quasi_static]\nduration = \"1 ms\"\nstep = \"0.1 ms\"\n",
+    );
+    let turning = lists.several(&text, &[]);
+    assert!(turning.speed.is_some() && turning.bearings.iter().all(|b| b.scene.speed.is_some()));
+    let standing = lists.several(&text, &["speed=none"]);
+    assert!(standing.speed.is_none() && standing.bearings.iter().all(|b| b.scene.speed.is_none()));
+}

@@ -1,0 +1,37 @@
+//! Studies of scenes whose files change.
+
+use crate::util::delivered::coarse;
+use crate::util::{Dir, Outcome};
+
+fn study(dir: &Dir) -> Outcome {
+    dir.raceway(&["study", "study.toml", "--out", "out"])
+}
+
+/// Wrong: points would be mixed that were run with one mesh and with another of the same name.
+#[test]
+fn a_study_refuses_points_of_files_that_have_changed() {
+    let dir = coarse(&["scenes/7010c_1800rpm_quasi_static_coarse.toml"]);
+    dir.write(
+        "study.toml",
+        "scene = \"scenes/7010c_1800rpm_quasi_static_coarse.toml\"\nset = ['quasi_static.duration = \"0.2 ms\"', \
+         'outer.mesh = \"{out}/outer.msh\"']\n[[axes]]\nname = \"load\"\nvalues = [{ name = \"a\", set = \
+         ['effects.axial_force.value = \"1 kN\"'] }]\n[[quantities]]\nname = \"force\"\nunit = \"N\"\nsummary = \
+         \"/largest_contact_force_n\"\n",
+    );
+    std::fs::create_dir_all(dir.path("out")).unwrap();
+    let mesh = std::fs::read(dir.path("meshes/7010c_outer_coarse.msh")).unwrap();
+    std::fs::write(dir.path("out/outer.msh"), &mesh).unwrap();
+    let first = study(&dir);
+    assert_eq!(first.code, Some(0), "{}", first.stderr);
+    assert_eq!(study(&dir).code, Some(0));
+    std::fs::write(dir.path("out/outer.msh"), [&mesh[..], b"\n"].concat()).unwrap();
+    let changed = study(&dir);
+    assert_eq!(changed.code, Some(2));
+    assert!(
+        changed
+            .stderr
+            .contains("was run with other contents of the file of outer.mesh than study.toml asks for now"),
+        "{}",
+        changed.stderr
+    );
+}
