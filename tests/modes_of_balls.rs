@@ -92,7 +92,16 @@ fn a_shaft_whose_modes_do_not_swing_is_told_of() {
         &dir,
         "none",
         ["0 N", "1e9 N s/m"],
-        &["--set", "shaft.tilt_x=locked", "--set", "shaft.tilt_y=locked"],
+        &[
+            "--set",
+            "shaft.tilt_x=locked",
+            "--set",
+            "shaft.tilt_y=locked",
+            "--set",
+            "shaft.x=locked",
+            "--set",
+            "shaft.y=locked",
+        ],
     );
     assert_eq!(outcome.code, Some(2), "{}", outcome.stderr);
     let expected =

@@ -43,8 +43,9 @@ const AXIAL: f64 = 0.5;
 /// |Im|/|lambda| up to which an eigenvalue counts as real.
 ///
 /// Round-off splits m equal real eigenvalues that share one vector by eps^(1/m) |lambda|: 2e-8 of two, as at critical
-/// damping, 1e-4 of four. What swings less than this dies by e^(-2000 pi) in one turn: nobody sees it swing.
-const REAL: f64 = 1e-3;
+/// damping, 1e-4 of four. Balls that creep back while they go round have multiples of the cage's speed for a frequency.
+/// What swings less than this dies by e^(-20 pi) in one turn: nobody sees it swing.
+const REAL: f64 = 0.1;
 
 /// How the shaft goes round in a mode.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -89,7 +90,7 @@ pub struct WhirlMode {
 }
 
 impl WhirlMode {
-    /// Whether it swings by more than round-off makes of motions that creep back, such as those of overdamped balls.
+    /// Whether it swings by more than motions do that creep back, such as those of overdamped balls that go round.
     pub fn swings(&self) -> bool {
         // The damping ratio is the cosine of the angle whose sine is |Im|/|lambda|.
         self.frequency > 0.0 && 1.0 - self.damping_ratio.powi(2) > REAL * REAL
