@@ -140,7 +140,9 @@ fn angle_of(word: Option<&str>) -> (f64, String) {
         return (40.0, format!("usual without a suffix; {LETTERS}"));
     };
     for (letters, degrees) in [("AC", 25.0), ("C", 15.0), ("B", 40.0)] {
-        if word.starts_with(letters) {
+        // C with a digit is a group of clearance or play.
+        let is_angle = |after: &str| !after.starts_with(|c: char| c.is_ascii_digit());
+        if word.strip_prefix(letters).is_some_and(is_angle) {
             return (degrees, format!("suffix {letters}"));
         }
     }
@@ -183,6 +185,11 @@ mod tests {
             ("7014 CD/HCP4A", 15.0, "suffix C"),
             ("7010-C-T-P4S", 15.0, "suffix C"),
             ("7306 BEP", 40.0, "suffix B"),
+            (
+                "7208 C3",
+                40.0,
+                "ESTIMATE, suffix C3 is not known; C is 15, AC 25, B 40 deg",
+            ),
             ("7208", 40.0, "usual without a suffix; C is 15, AC 25, B 40 deg"),
             (
                 "7208/P5",
