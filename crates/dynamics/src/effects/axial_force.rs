@@ -13,12 +13,12 @@ use crate::model::{Effect, Model};
 
 const EXAMPLE: &str = r#"[effects.axial_force]
 value = "2 kN"          # + presses the inner ring along +z into the balls (preload)
-schedule.ramp = { start = "0 s", duration = "1 ms" }    # optional: its factor over time; from = 0 to = 1 by itself
-# schedule.step = { at = "1 ms" }       # before = 0; after = 1, from exactly its time on
-# schedule.impact = { start = "1 ms", duration = "0.5 ms" }     # half sine with the peak 1, 0 before and after
-# schedule.harmonic = { frequency = "50 Hz", phase = "0 deg" }  # mean + amplitude sin(2 pi frequency t + phase), with
-                        # mean = 0 and amplitude = 1 by itself
-# schedule.table = { times = ["0 s", "1 ms"], factors = [1, 0.5] }      # linear between the times, constant outside
+schedule.ramp = { start = "0 s", duration = "1 ms" }    # optional: its factor over time. from = 0, to = 1 if not given.
+# schedule.step = { at = "1 ms" }       # before = 0, after = 1 if not given. At exactly its time it has happened.
+# schedule.impact = { start = "1 ms", duration = "0.5 ms" }     # half sine with the peak 1, 0 before and after.
+# schedule.harmonic = { frequency = "50 Hz", phase = "0 deg" }  # mean + amplitude sin(2 pi frequency t + phase).
+                        # mean = 0, amplitude = 1 if not given.
+# schedule.table = { times = ["0 s", "1 ms"], factors = [1, 0.5] }      # linear between the times, constant outside.
                         # A motion takes the means over its steps.
 "#;
 
