@@ -11,7 +11,7 @@ use anyhow::anyhow;
 use assembly::whirl::TurningAssembly;
 use clap::Args;
 use contact::Side;
-use dynamics::kinematics::{Kinematics, Speed};
+use dynamics::kinematics::Speed;
 use dynamics::whirl::{TurningShaft, WhirlMode, turning_inertia};
 use dynamics::{Linearisation, Model, ShaftDof, StaticSolution, StaticSolver};
 use results::campbell::{CAMPBELL_LINES, CAMPBELL_TABLE, ModesAtSpeed};
@@ -21,7 +21,7 @@ use results::whole::require_free;
 use scene::{AnyScene, Scene, build_model, doubts, model_with_rings};
 
 use crate::campbell_files::{
-    self, Diagram, MODES_OF_BEAM, growing, keep_modes_of_shaft, require_one_point, without_stress,
+    self, Diagram, MODES_OF_BEAM, cage_speed, growing, keep_modes_of_shaft, require_one_point, without_stress,
 };
 use crate::damping::{damping_note, laws};
 use crate::progress::Progress;
@@ -182,9 +182,8 @@ fn diagram(
         let solution = solution.map_err(Failure::solving).map_err(at)?;
         require_load(&solution).map_err(at)?;
         let linear = Linearisation::new(&model, &solver, &solution, laws(&scene.effects));
-        let orbit = Kinematics::new(&model.geometry, scene.effects.slip()).of_cage(speeds);
         let linear = linear.map_err(Failure::solving).map_err(at)?;
-        let linear = linear.going_round(model.ball_mass(), orbit);
+        let linear = linear.going_round(model.ball_mass(), cage_speed(&scene, time));
         let modes = match &bodies {
             None => TurningShaft::new(&model, &linear, inertia, speeds[0]).map_err(Failure::solving),
             Some(bodies) => in_bodies(bodies, (&model, &linear), (&solver, &solution), speeds[0]),

@@ -12,7 +12,7 @@ use results::campbell::{CAMPBELL_LINES, CAMPBELL_TABLE, ModesAtSpeed, print_camp
 use results::failure::Failure;
 use results::summary::print_warnings;
 use results::whole::make_asked_folder;
-use scene::Analysis;
+use scene::{Analysis, Scene, rolling};
 
 use crate::linear_figures::draw;
 
@@ -33,6 +33,11 @@ pub fn keep_modes_of_shaft(modes: &mut Vec<WhirlMode>, number: usize) {
     let is_of_shaft = |mode: &WhirlMode| mode.shaft_share + mode.standing_share > OF_BALLS;
     modes.retain(|mode| mode.damping_ratio < GROWS || (mode.swings() && is_of_shaft(mode)));
     modes.truncate(number);
+}
+
+/// How fast the balls of a bearing go round with the cage at a time in s, rad/s; 0 without a speed.
+pub fn cage_speed(scene: &Scene, time: f64) -> f64 {
+    rolling(scene).map_or(0.0, |rolling| rolling.cage_speed(time))
 }
 
 /// What a user should know of a mode that grows, by its number among those shown.

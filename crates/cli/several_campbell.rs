@@ -6,8 +6,8 @@ use std::path::Path;
 use anyhow::anyhow;
 use assembly::stiffness::LinearAssembly;
 use assembly::whirl::TurningAssembly;
-use assembly::{Assembly, AssemblySolver, MountedBearing};
-use dynamics::kinematics::{Kinematics, Speed};
+use assembly::{Assembly, AssemblySolver};
+use dynamics::kinematics::Speed;
 use results::campbell::{CAMPBELL_LINES, CAMPBELL_TABLE, ModesAtSpeed};
 use results::failure::Failure;
 use results::survey::say_doubts;
@@ -15,7 +15,7 @@ use results::whole::require_free;
 use scene::{SeveralScene, assembly_with_rings, build_assembly};
 
 use crate::campbell_files::{
-    self, Diagram, MODES_OF_BEAM, growing, keep_modes_of_shaft, require_one_point, without_stress,
+    self, Diagram, MODES_OF_BEAM, cage_speed, growing, keep_modes_of_shaft, require_one_point, without_stress,
 };
 use crate::damping::{damping_note, laws};
 use crate::progress::Progress;
@@ -87,9 +87,9 @@ fn diagram(
         assembly = assembly_with_rings(&scene, rings(assembly))?;
         let solution = solver.solve(&mut assembly, before.as_ref());
         let solution = solution.map_err(solving).map_err(at)?;
-        let orbits = orbits(&scene, &assembly);
+        let cages: Vec<f64> = scene.bearings.iter().map(|b| cage_speed(&b.scene, 0.0)).collect();
         let modes = LinearAssembly::new(&assembly, &solver, &solution, laws(&scene.effects))
-            .map(|linear| linear.going_round(&assembly, &orbits))
+            .map(|linear| linear.going_round(&assembly, &cages))
             .and_then(|linear| turning.equations((&assembly, &solver), (&solution, &linear), speed));
         let modes = modes.map_err(solving).map_err(at)?.modes();
         let mut modes = modes.map_err(Failure::solving).map_err(at)?;
@@ -110,18 +110,6 @@ fn diagram(
     }
     progress.finish();
     Ok((found, assembly, warnings))
-}
-
-/// How fast the balls of each bearing go round in its own frame, rad/s.
-fn orbits(scene: &SeveralScene, assembly: &Assembly) -> Vec<f64> {
-    let slip = scene.effects.slip();
-    let of_bearing = |(of, placed): (&scene::BearingOnShaft, &MountedBearing)| {
-        let speeds = of.scene.speed.as_ref();
-        let kinematics = Kinematics::new(&placed.model.geometry, slip);
-        speeds.map_or(0.0, |speeds| kinematics.cage_speed(speeds, 0.0))
-    };
-    let bearings = scene.bearings.iter().zip(&assembly.bearings);
-    bearings.map(of_bearing).collect()
 }
 
 /// Has the shaft turn at a speed, rad/s, in all bearings.

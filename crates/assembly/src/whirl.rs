@@ -11,9 +11,7 @@
 use contact::Side;
 use dynamics::bodies::AXES;
 use dynamics::stiffness::{N_SHAFT, ShaftMatrix};
-use dynamics::whirl::{
-    ShaftRow, TurningShaft, WhirlMatrices, is_held, ring_inertia, shaft_inertia, turning_inertia,
-};
+use dynamics::whirl::{ShaftRow, TurningShaft, WhirlMatrices, ring_inertia, shaft_inertia, turning_inertia};
 use dynamics::{Linearisation, Model, ShaftDof, StaticSolution, StaticSolver};
 use ring::rigid::RigidInertia;
 
@@ -233,7 +231,7 @@ pub fn equations(
         }
         for i in 0..balls(b) {
             all.mass[(n + 1) * (first + i)] = bearing.model.ball_mass();
-            if is_held(&own, N_SHAFT + i) {
+            if own.is_held(N_SHAFT + i) {
                 rows.push(first + i);
             }
         }

@@ -17,7 +17,7 @@
 use dense::linear_combinations;
 use dynamics::condensation::Condensation;
 use dynamics::moved_seat::{MovedSeats, SeatMatrices};
-use dynamics::stiffness::N_SHAFT;
+use dynamics::stiffness::{N_SHAFT, is_held};
 use dynamics::whirl::TurningShaft;
 
 use crate::error::AssemblyError;
@@ -127,7 +127,7 @@ impl<'p> AllRows<'p> {
         for (i, to) in spread.iter().enumerate() {
             let stiffness = &own.stiffness[m * i..m * (i + 1)];
             let is_ball = (N_SHAFT..own.n_kept).contains(&i);
-            if is_ball && !stiffness.iter().enumerate().any(|(j, k)| j != i && *k != 0.0) {
+            if is_ball && !is_held(stiffness, i) {
                 self.held.push(to[0].0);
             }
             let damping = own.damping.as_ref().map(|damping| &damping[m * i..m * (i + 1)]);

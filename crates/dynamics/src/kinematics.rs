@@ -284,6 +284,11 @@ impl Rolling {
         }
     }
 
+    /// Speed of the cage at a time, rad/s.
+    pub fn cage_speed(&self, time: f64) -> f64 {
+        self.kinematics.cage_speed(&self.speeds, time)
+    }
+
     /// Speed of a ball's rotation about its own axis relative to the cage at a time, rad/s.
     pub fn spin(&self, time: f64) -> f64 {
         self.kinematics.spin(&self.speeds, time)

@@ -17,7 +17,7 @@
 
 use std::f64::consts::TAU;
 
-use crate::stiffness::{Linearisation, N_SHAFT};
+use crate::stiffness::{Linearisation, N_SHAFT, is_held};
 
 impl Linearisation {
     /// The same with balls of this mass, kg, that go round with `speed`, rad/s.
@@ -51,7 +51,7 @@ impl Linearisation {
         let (n, balls) = (self.n, self.n_balls);
         let touched: Vec<bool> = (N_SHAFT..N_SHAFT + 2 * balls)
             .step_by(2)
-            .map(|i| (0..n).any(|j| j != i && self.stiffness[n * i + j] != 0.0))
+            .map(|i| is_held(&self.stiffness[n * i..n * (i + 1)], i))
             .collect();
         let entry = |k: usize| {
             let (i, j) = (k / balls, k % balls);

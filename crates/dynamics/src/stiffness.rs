@@ -106,6 +106,18 @@ pub struct ShaftAndBalls {
     pub damping: Option<Vec<f64>>,
 }
 
+impl ShaftAndBalls {
+    /// Whether something touches the ball of row `i`.
+    pub fn is_held(&self, i: usize) -> bool {
+        is_held(&self.stiffness[self.n * i..self.n * (i + 1)], i)
+    }
+}
+
+/// Whether something touches the ball of row `i` of a stiffness.
+pub fn is_held(row: &[f64], i: usize) -> bool {
+    row.iter().enumerate().any(|(j, k)| j != i && *k != 0.0)
+}
+
 impl Linearisation {
     /// Of the bearing about an equilibrium that `solver` found of `model`.
     pub fn new(
@@ -145,7 +157,8 @@ impl Linearisation {
         if case.loads.follows_angles {
             add_following_loads(model, solution, case, &x, &mut stiffness)?;
         }
-        let damping = damping_of(parts, &system, &x, laws);
+        let damped = laws.contacts.map(|law| damped_contacts(parts, &x, law));
+        let damping = damping_of(parts, &system, &x, (damped.as_deref(), laws.rings));
         let n = system.n();
         hold_unloaded(parts, n, &mut stiffness);
         Ok(Linearisation {
@@ -155,9 +168,7 @@ impl Linearisation {
             ring_damping: laws.rings.map_or(0.0, |rings| rings.stiffness),
             n_balls: parts.balls.len(),
             ports: [None, None],
-            closing: laws
-                .contacts
-                .map_or(Vec::new(), |law| closing(parts, &system, &x, law)),
+            closing: damped.map_or(Vec::new(), |damped| closing(parts, &system, &damped)),
             load_stiffness: load_stiffness(parts, &solution.displacements.shaft),
             leaves_out_mass_damping: laws.rings.is_some_and(|rings| rings.mass > 0.0),
         })
@@ -372,16 +383,21 @@ fn angle_growth(case: &LoadCase, x: &[f64], unknown: usize) -> Vec<f64> {
 }
 
 /// Damping over all unknowns, row-major; None where no law gives any.
-fn damping_of(parts: &BearingParts, system: &System, x: &[f64], laws: DampingLaws) -> Option<Vec<f64>> {
+fn damping_of(
+    parts: &BearingParts,
+    system: &System,
+    x: &[f64],
+    (contacts, rings): (Option<&[DampedContact]>, Option<RingDamping>),
+) -> Option<Vec<f64>> {
     let n = system.n();
-    let stiffness_factor = laws.rings.map_or(0.0, |rings| rings.stiffness);
+    let stiffness_factor = rings.map_or(0.0, |rings| rings.stiffness);
     let has_rings = parts.rings.iter().any(Option::is_some) && stiffness_factor > 0.0;
-    if laws.contacts.is_none() && !has_rings {
+    if contacts.is_none() && !has_rings {
         return None;
     }
     let mut damping = vec![0.0; n * n];
-    if let Some(law) = laws.contacts {
-        system.add_link_tangents(x, &contact_damping(parts, system, x, law), &mut damping);
+    if let Some(contacts) = contacts {
+        system.add_link_tangents(x, &contact_damping(parts, system, x, contacts), &mut damping);
     }
     for (number, ports) in parts.rings.iter().flatten().enumerate() {
         let own = system.unknowns(BodyId::Elastic(number));
@@ -395,7 +411,12 @@ fn damping_of(parts: &BearingParts, system: &System, x: &[f64], laws: DampingLaw
 }
 
 /// The damping of all contacts as tangents of their links, c n n^T each; other families have none.
-fn contact_damping(parts: &BearingParts, system: &System, x: &[f64], law: ContactDamping) -> Vec<LinkForces> {
+fn contact_damping(
+    parts: &BearingParts,
+    system: &System,
+    x: &[f64],
+    contacts: &[DampedContact],
+) -> Vec<LinkForces> {
     let families = parts.interactions().into_iter().enumerate();
     families
         .map(|(number, family)| {
@@ -403,10 +424,7 @@ fn contact_damping(parts: &BearingParts, system: &System, x: &[f64], law: Contac
             let mut forces = family.evaluate(lengths(&found), &SharedLaps::default());
             forces.tangents.iter_mut().for_each(|t| *t = 0.0);
             if number == CONTACTS {
-                let states = parts.contacts.states(&found[1]);
-                for (site, state) in states.iter().enumerate() {
-                    let touching = parts.contacts.sites[site].touching;
-                    let [c, _] = coefficient(&law, state.length - touching);
+                for (site, (state, c)) in contacts.iter().enumerate() {
                     let (first, n) = (N_ROWS * N_ROWS * (site / 2), state.normal.to_array());
                     for (i, k) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
                         let (row, column) = (2 * (site % 2) + i, 2 * (site % 2) + k);
@@ -419,18 +437,27 @@ fn contact_damping(parts: &BearingParts, system: &System, x: &[f64], law: Contac
         .collect()
 }
 
-/// How the contacts close, with their damping.
-fn closing(parts: &BearingParts, system: &System, x: &[f64], law: ContactDamping) -> Vec<ClosingContact> {
-    let of_site = |(state, site): (&SiteState, &Site)| {
-        let [c, _] = coefficient(&law, state.length - site.touching);
+/// A contact and its damping coefficient, N s/m.
+type DampedContact = (SiteState, f64);
+
+/// The contacts with their damping, by site.
+fn damped_contacts(parts: &BearingParts, x: &[f64], law: ContactDamping) -> Vec<DampedContact> {
+    let states = parts.states(x).into_iter().zip(&parts.contacts.sites);
+    states
+        .map(|(state, site)| (state, coefficient(&law, state.length - site.touching)[0]))
+        .collect()
+}
+
+/// How damped contacts close, by site.
+fn closing(parts: &BearingParts, system: &System, contacts: &[DampedContact]) -> Vec<ClosingContact> {
+    let of_site = |((state, c), site): (&DampedContact, &Site)| {
         let elastic = parts.elastic(site.side).map(BodyId::Elastic);
         let ports = elastic.map(|body| system.unknowns(body).start + 2 * site.ball);
         let carrier = parts.carrier(site.side).map(BodyId::Lumped);
         let carrier = carrier.map(|body| (system.unknowns(body).start, site.carrier_rows()));
-        ClosingContact::new((state, c), (N_SHAFT + 2 * site.ball, ports), carrier)
+        ClosingContact::new((state, *c), (N_SHAFT + 2 * site.ball, ports), carrier)
     };
-    let states = parts.states(x);
-    states.iter().zip(&parts.contacts.sites).map(of_site).collect()
+    contacts.iter().zip(&parts.contacts.sites).map(of_site).collect()
 }
 
 /// Where a stiffness is least.

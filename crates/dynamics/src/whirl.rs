@@ -33,7 +33,7 @@ use crate::bearing::partner;
 use crate::bodies::AXES;
 use crate::error::DynamicsError;
 use crate::model::{Model, ShaftDof};
-use crate::stiffness::{Linearisation, N_SHAFT, ShaftAndBalls};
+use crate::stiffness::{Linearisation, N_SHAFT};
 
 /// Whirl below which a motion counts as in one plane: round-off of bearings that are alike in x and y is below 1e-9.
 const PLANAR: f64 = 1e-6;
@@ -242,7 +242,7 @@ impl TurningShaft {
         let rows: Vec<usize> = free
             .iter()
             .copied()
-            .chain((N_SHAFT..all.n).filter(|&i| is_held(&all, i)))
+            .chain((N_SHAFT..all.n).filter(|&i| all.is_held(i)))
             .collect();
         let mut stiffness = all.stiffness.clone();
         let (mut mass, mut rates) = (vec![0.0; all.n * all.n], vec![0.0; all.n * all.n]);
@@ -407,11 +407,6 @@ impl TurningShaft {
         }
         self.speed.signum() * difference / sum
     }
-}
-
-/// Whether something touches the ball of a row.
-pub fn is_held(all: &ShaftAndBalls, i: usize) -> bool {
-    (0..all.n).any(|j| j != i && all.stiffness[all.n * i + j] != 0.0)
 }
 
 fn require_inertia(free: &[usize], inertia: RigidInertia) -> Result<(), DynamicsError> {

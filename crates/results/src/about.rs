@@ -152,7 +152,8 @@ fn mesh_text(ring: &FlexibleRing) -> anyhow::Result<String> {
     Ok(format!("{} {}", ring.mesh_as_typed, checksum_text(&ring.mesh)?))
 }
 
-fn checksum_text(path: &Path) -> anyhow::Result<String> {
+/// Length and checksum of a file.
+pub fn checksum_text(path: &Path) -> anyhow::Result<String> {
     let (length, crc) = checkpoint::file_checksum(path)?;
     Ok(format!("({length} bytes, checksum {crc:08x})"))
 }

@@ -8,6 +8,7 @@ use comm::print;
 use results::failure::Failure;
 
 use super::format::CostKind;
+use super::plan::arguments;
 use super::report::{PointReport, ResultReport, StudyReport};
 
 /// What is asked.
@@ -35,9 +36,9 @@ pub fn advise(question: &Question) -> Result<(), Failure> {
     };
     let mut report = StudyReport::load(&path)?;
     let folder = path.parent().filter(|folder| *folder != Path::new(""));
-    let folder = folder.unwrap_or(Path::new(".")).display().to_string();
-    let sets = report.points.iter_mut().flat_map(|point| &mut point.set);
-    sets.for_each(|set| *set = set.replace("{out}", &folder));
+    for point in &mut report.points {
+        point.set = arguments(&point.set, folder.unwrap_or(Path::new(".")));
+    }
     let kind = question.cost.unwrap_or(report.cost);
     let names = asked(&report, question.quantity.as_deref(), &path)?;
     print::line(format_args!(

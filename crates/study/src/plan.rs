@@ -154,7 +154,7 @@ impl Plan {
             Scene::parse(
                 &self.scene_text,
                 &self.scene,
-                &arguments(point, out),
+                &arguments(&point.set, out),
                 files,
             )
             .with_context(|| {
@@ -203,10 +203,10 @@ impl Plan {
     }
 }
 
-/// The `--set` arguments of a point in a study whose results are in `out`.
-pub fn arguments(point: &Point, out: &Path) -> Vec<String> {
+/// `--set` arguments of a point in a study whose results are in `out`.
+pub fn arguments(set: &[String], out: &Path) -> Vec<String> {
     let out = out.display().to_string();
-    point.set.iter().map(|s| s.replace("{out}", &out)).collect()
+    set.iter().map(|s| s.replace("{out}", &out)).collect()
 }
 
 /// All combinations of values, without those that are excluded.

@@ -4,8 +4,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, bail};
-use checkpoint::file_checksum;
-use results::about::SOURCE_COMMIT;
+use results::about::{SOURCE_COMMIT, checksum_text};
 use results::whole;
 use scene::{MeshFiles, Scene, named_files};
 use serde::{Deserialize, Serialize};
@@ -91,7 +90,7 @@ pub fn find(plan: &Plan, point: &Point, out: &Path) -> anyhow::Result<Option<Rec
         ),
         ("another number of threads", record.threads != plan.threads),
     ];
-    let now = files(plan, &arguments(point, out))?;
+    let now = files(plan, &arguments(&point.set, out))?;
     let file = now
         .iter()
         .find(|(key, file)| record.files.get(*key).is_some_and(|old| old != *file));
@@ -114,11 +113,10 @@ pub fn find(plan: &Plan, point: &Point, out: &Path) -> anyhow::Result<Option<Rec
 /// Length and checksum of the files that the scene names with these arguments, by its keys.
 pub fn files(plan: &Plan, set: &[String]) -> anyhow::Result<BTreeMap<String, String>> {
     let scene = Scene::parse(&plan.scene_text, &plan.scene, set, MeshFiles::MayBeMissing)?;
-    let told = named_files(&scene)?.into_iter().map(|(key, path)| {
-        let (length, crc) = file_checksum(&path)?;
-        Ok((key, format!("{length} bytes, checksum {crc:08x}")))
-    });
-    told.collect()
+    let named = named_files(&scene)?.into_iter();
+    named
+        .map(|(key, path)| Ok((key, checksum_text(&path)?)))
+        .collect()
 }
 
 /// Writes a record: complete or not at all.

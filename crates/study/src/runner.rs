@@ -6,7 +6,6 @@
 //! the tasks of a Slurm array, from running the same point. A second one belongs to the run, which ends a moment
 //! after a study that was killed: the next study waits for it.
 
-use std::collections::BTreeMap;
 use std::fs::{File, TryLockError};
 use std::os::unix::process::ExitStatusExt;
 use std::path::Path;
@@ -88,24 +87,22 @@ fn run_point(plan: &Plan, point: &Point, out: &Path) -> Result<(), Failure> {
         format!("the run in {folder} has not ended, although its study has; kill it, then the same command goes on")
     })?;
     print::note(format_args!("point {}: {}", point.index, plan.name(point)));
-    let set = arguments(point, out);
+    let set = arguments(&point.set, out);
+    let built = match plan.meshes {
+        Meshes::Build => build_meshes(plan, &set, out),
+        Meshes::Given => Ok(()),
+    };
     let mut record = Record {
         index: point.index,
         name: plan.name(point),
         set: point.set.clone(),
         scene: plan.whole_scene(&set)?,
-        files: BTreeMap::new(),
+        files: record::files(plan, &set)?,
         threads: plan.threads,
         program: record::program(),
-        failure: None,
+        failure: built.err().map(|failure| failure.text()),
         costs: Vec::new(),
     };
-    if plan.meshes == Meshes::Build
-        && let Err(failure) = build_meshes(plan, &set, out)
-    {
-        record.failure = Some(failure.text());
-    }
-    record.files = record::files(plan, &set)?;
     for repeat in 0..plan.repeats {
         if record.failure.is_some() {
             break;

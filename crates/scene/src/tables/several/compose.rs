@@ -379,13 +379,7 @@ fn copy_shared(list: &DocumentMut, document: &mut DocumentMut, left_out: &[&str]
     let is_shared = |name: &str| {
         !(OF_LIST.contains(&name) || OF_TYPE.contains(&name) || ["body", "include"].contains(&name))
     };
-    let own = document.iter().map(|(name, _)| name.to_string());
-    let removed: Vec<String> = own
-        .filter(|name| is_shared(name) && !list.contains_key(name))
-        .collect();
-    removed.iter().for_each(|name| {
-        document.remove(name);
-    });
+    document.retain(|name, _| !is_shared(name) || list.contains_key(name));
     for (name, item) in list.iter().filter(|(name, _)| is_shared(name)) {
         let mut item = item.clone();
         if let (true, Some(effects)) = (name == "effects", item.as_table_like_mut()) {
