@@ -64,6 +64,7 @@ mod several_modes;
 mod several_preload;
 mod several_quasi_static;
 mod several_ripple;
+mod several_sweep;
 mod shared_housing;
 mod signals;
 mod small_files;

@@ -178,17 +178,13 @@ fn stopped(course: &mut impl OverInstants, reason: &str) -> Failure {
 
 /// Says what there is of a sweep that stops, with so many points solved from its point `first` to `last`; `others` is
 /// how to have the others. Points are written as they are solved.
-pub fn stopped_sweep(
-    reason: &str,
-    (first, solved, last): (u64, u64, u64),
-    dir: &Path,
-    others: &str,
-) -> Failure {
-    let total = last + 1 - first;
+pub fn stopped_sweep(reason: &str, (first, solved, last): (u64, u64, u64), dir: &Path) -> Failure {
+    let (total, next) = (last + 1 - first, first + solved);
     Failure::Stopped(match solved {
         0 => anyhow!("{reason}; none of the {total} points of the sweep has been solved"),
         _ => anyhow!(
-            "{reason}; the first {solved} of the {total} points of the sweep are in {}; {others}",
+            "{reason}; the first {solved} of the {total} points of the sweep are in {}; for the others: the same \
+             command with --points {next}-{last} and another --out",
             dir.display()
         ),
     })

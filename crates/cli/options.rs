@@ -1,13 +1,14 @@
 //! What the command line says about a run besides its scene.
 
 use std::ops::Range;
+use std::path::Path;
 use std::time::Duration;
 
 use anyhow::anyhow;
 use clap::Args;
 use results::failure::Failure;
 use results::stop::parse_wall_time;
-use scene::{Analysis, Scene};
+use scene::Analysis;
 
 /// Limits of a run.
 #[derive(Clone, Debug, Default, Args)]
@@ -34,11 +35,11 @@ impl SweepPart {
     }
 
     /// Refuses a scene that has no such points.
-    pub fn check(self, scene: &Scene) -> Result<(), Failure> {
-        let Analysis::Sweep(sweep) = &scene.analysis else {
+    pub fn check(self, scene: &Path, analysis: &Analysis) -> Result<(), Failure> {
+        let Analysis::Sweep(sweep) = analysis else {
             return Err(Failure::User(anyhow!(
                 "--points chooses points of a [sweep], and {} has none",
-                scene.path.display()
+                scene.display()
             )));
         };
         let n = sweep.points.len();
@@ -46,7 +47,7 @@ impl SweepPart {
             return Err(Failure::User(anyhow!(
                 "--points names point {}, but the sweep of {} has {n}, from 0 to {}",
                 self.last,
-                scene.path.display(),
+                scene.display(),
                 n - 1
             )));
         }

@@ -1,4 +1,4 @@
-//! Points of a run of one bearing, solved on all threads ahead of the one that is written.
+//! Points of a run, solved on all threads ahead of the one that is written: of one bearing or of a list of them.
 //!
 //! What a point starts from follows from its number ([`dynamics::points`]), so that the bits do not depend on what is
 //! solved at the same time. The caller takes the points in order. Of those that it has not taken yet at most
@@ -12,28 +12,38 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::thread;
 
+use assembly::points::{AssemblyPoint, AssemblyPointStart};
 use dynamics::points::{PointStart, SolvedPoint, again_from, most_ahead, threads_of_points};
 use rayon::Scope;
 use results::failure::Failure;
-use timer::Laps;
+
+/// The equilibrium of a point.
+pub trait FoundPoint: Send {
+    /// What it leaves to those that start from it.
+    type Start: Clone + Send + Sync;
+
+    /// The same of this one.
+    fn start(&self) -> Self::Start;
+}
 
 /// A point with what else was made for it.
-pub type PointAnswer<M> = Result<(SolvedPoint, M), Failure>;
+pub type PointAnswer<P, M> = Result<(P, M), Failure>;
 
 /// Finds the equilibrium of a point, the first is 0, from another one.
-pub type PointSolver<'a, M> = dyn Fn(u64, Option<&PointStart>) -> PointAnswer<M> + Sync + 'a;
+pub type PointSolver<'a, P, M> =
+    dyn Fn(u64, Option<&<P as FoundPoint>::Start>) -> PointAnswer<P, M> + Sync + 'a;
 
 /// What a run goes on from.
 #[derive(Clone)]
-pub struct Taken {
+pub struct Taken<S> {
     /// The last point that was taken.
     pub n: u64,
     /// What it leaves.
-    pub before: PointStart,
+    pub before: S,
     /// What the next ones start from.
-    pub start: PointStart,
+    pub start: S,
     /// What it was found from itself; None: from zero displacement.
-    pub from: Option<PointStart>,
+    pub from: Option<S>,
 }
 
 /// Points that start from the same one, in order.
@@ -46,49 +56,47 @@ pub struct Grouping {
 }
 
 /// The points ahead of the one that was taken last.
-pub struct PointsAhead<'s, 'scope, M> {
+pub struct PointsAhead<'s, 'scope, P: FoundPoint, M> {
     /// Where points are solved at the same time; None: when they are asked for.
     scope: Option<&'s Scope<'scope>>,
-    solve: &'scope PointSolver<'scope, M>,
+    solve: &'scope PointSolver<'scope, P, M>,
     group: Grouping,
-    taken: Option<Taken>,
+    taken: Option<Taken<P::Start>>,
     /// The last point whose followers wait or are under way.
     followed: Option<u64>,
     /// Points whose start is known, in the order in which they are solved.
-    waiting: VecDeque<(u64, Arc<PointStart>)>,
+    waiting: VecDeque<(u64, Arc<P::Start>)>,
     /// Points solved or under way.
     ahead: usize,
-    found: BTreeMap<u64, thread::Result<PointAnswer<M>>>,
-    answers: (Sender<NumberedAnswer<M>>, Receiver<NumberedAnswer<M>>),
+    found: BTreeMap<u64, thread::Result<PointAnswer<P, M>>>,
+    answers: (Sender<NumberedAnswer<P, M>>, Receiver<NumberedAnswer<P, M>>),
     /// Set once no more points are asked for.
     has_ended: Arc<AtomicBool>,
-    /// Wall time of all points taken, summed over threads.
-    pub laps: Laps,
 }
 
-impl<M> Drop for PointsAhead<'_, '_, M> {
+impl<P: FoundPoint, M> Drop for PointsAhead<'_, '_, P, M> {
     fn drop(&mut self) {
         self.end();
     }
 }
 
-impl<M> PointsAhead<'_, '_, M> {
+impl<P: FoundPoint, M> PointsAhead<'_, '_, P, M> {
     /// No more points are asked for: those that nobody has begun are not solved.
     pub fn end(&self) {
         self.has_ended.store(true, Ordering::Relaxed);
     }
 }
 
-type NumberedAnswer<M> = (u64, thread::Result<PointAnswer<M>>);
+type NumberedAnswer<P, M> = (u64, thread::Result<PointAnswer<P, M>>);
 
-impl<'s, 'scope, M: Send> PointsAhead<'s, 'scope, M> {
+impl<'s, 'scope, P: FoundPoint, M: Send> PointsAhead<'s, 'scope, P, M> {
     /// Those of a run from its beginning, or of one that goes on.
     pub fn new(
         scope: &'s Scope<'scope>,
-        solve: &'scope PointSolver<'scope, M>,
+        solve: &'scope PointSolver<'scope, P, M>,
         group: Grouping,
-        taken: Option<Taken>,
-    ) -> PointsAhead<'s, 'scope, M> {
+        taken: Option<Taken<P::Start>>,
+    ) -> PointsAhead<'s, 'scope, P, M> {
         let at_once = threads_of_points() > 1 && group.size > 1;
         let mut points = PointsAhead {
             scope: at_once.then_some(scope),
@@ -101,7 +109,6 @@ impl<'s, 'scope, M: Send> PointsAhead<'s, 'scope, M> {
             found: BTreeMap::new(),
             answers: channel(),
             has_ended: Arc::default(),
-            laps: Laps::default(),
         };
         if let Some(taken) = taken {
             let first = taken.n / group.size * group.size;
@@ -112,12 +119,12 @@ impl<'s, 'scope, M: Send> PointsAhead<'s, 'scope, M> {
     }
 
     /// What a run goes on from after the last point that was taken, if there is one.
-    pub fn taken(&self) -> Option<&Taken> {
+    pub fn taken(&self) -> Option<&Taken<P::Start>> {
         self.taken.as_ref()
     }
 
     /// The next point. After a failure there is none.
-    pub fn take(&mut self) -> PointAnswer<M> {
+    pub fn take(&mut self) -> PointAnswer<P, M> {
         let n = self.taken.as_ref().map_or(0, |taken| taken.n + 1);
         let first = match n > 0 && self.scope.is_some() {
             true => self.wait_for(n),
@@ -132,7 +139,6 @@ impl<'s, 'scope, M: Send> PointsAhead<'s, 'scope, M> {
             true => taken.before.clone(),
             false => taken.start.clone(),
         });
-        self.laps.merge(&point.laps);
         let before = point.start();
         let start = match self.taken.take() {
             Some(taken) if !n.is_multiple_of(self.group.size) => taken.start,
@@ -152,7 +158,7 @@ impl<'s, 'scope, M: Send> PointsAhead<'s, 'scope, M> {
     }
 
     /// The points that start from point `n` may be solved. The last of them is the first: more points start from it.
-    fn follow(&mut self, n: u64, start: PointStart) {
+    fn follow(&mut self, n: u64, start: P::Start) {
         if self.scope.is_none() || self.followed.is_some_and(|followed| followed >= n) {
             return;
         }
@@ -187,7 +193,7 @@ impl<'s, 'scope, M: Send> PointsAhead<'s, 'scope, M> {
     }
 
     /// A point that is under way or waits.
-    fn wait_for(&mut self, n: u64) -> PointAnswer<M> {
+    fn wait_for(&mut self, n: u64) -> PointAnswer<P, M> {
         loop {
             while let Ok(found) = self.answers.1.try_recv() {
                 self.note(found);
@@ -201,13 +207,29 @@ impl<'s, 'scope, M: Send> PointsAhead<'s, 'scope, M> {
         }
     }
 
-    fn note(&mut self, (n, found): NumberedAnswer<M>) {
+    fn note(&mut self, (n, found): NumberedAnswer<P, M>) {
         if n.is_multiple_of(self.group.size)
             && let Ok(Ok((point, _))) = &found
         {
             self.follow(n, point.start());
         }
         self.found.insert(n, found);
+    }
+}
+
+impl FoundPoint for SolvedPoint {
+    type Start = PointStart;
+
+    fn start(&self) -> PointStart {
+        SolvedPoint::start(self)
+    }
+}
+
+impl FoundPoint for AssemblyPoint {
+    type Start = AssemblyPointStart;
+
+    fn start(&self) -> AssemblyPointStart {
+        AssemblyPoint::start(self)
     }
 }
 
@@ -239,7 +261,7 @@ mod tests {
         let rolling = Rolling::new(&model.geometry, Speed::constant(188.5), [0.0; 2]);
         let bearing = QuasiStaticMotion::new(&model, rolling, 2e-4).unwrap();
         let (all, found) = (Mutex::new(BTreeMap::new()), Mutex::new(Vec::new()));
-        let solve = |n: u64, from: Option<&PointStart>| -> PointAnswer<()> {
+        let solve = |n: u64, from: Option<&PointStart>| -> PointAnswer<SolvedPoint, ()> {
             let text = format!("{from:?}");
             let before = n
                 .checked_sub(1)

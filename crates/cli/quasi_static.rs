@@ -12,7 +12,7 @@ use checkpoint::StateArray;
 use comm::print;
 use contact::Side;
 use dynamics::kinematics::{Rolling, Speed};
-use dynamics::points::{PointStart, points_per_start};
+use dynamics::points::{PointStart, SolvedPoint, points_per_start};
 use dynamics::{Model, QuasiStaticMotion, StaticSolution};
 use results::disk::Forecast;
 use results::failure::{Failure, agree};
@@ -29,7 +29,7 @@ use results::summary::{Findings, Summary};
 use results::survey::{Survey, build_surveyed};
 use results::{console, seat};
 use scene::{Scene, rolling};
-use timer::Stopwatch;
+use timer::{Laps, Stopwatch};
 
 use crate::instants::{self, Due, OverInstants, PROGRESS_STEPS, WrittenSteps};
 use crate::options::Limits;
@@ -61,7 +61,7 @@ pub fn run(
     rayon::in_place_scope(|scope| {
         let mut ahead = PointsAhead::new(scope, &solve, group, None);
         let (first, ()) = ahead.take()?;
-        let first = first.solution;
+        let (first, laps) = (first.solution, first.laps);
         // The first solution makes the folder: a scene that has none leaves no files.
         let shown = Snapshot::of_equilibrium(&first, rolling.as_ref());
         let files = Files::create(scene, &model, dir, &shown, survey, &first.warnings);
@@ -72,6 +72,7 @@ pub fn run(
             rolling: rolling.as_ref(),
             bearing: &bearing,
             ahead,
+            laps,
             files: agree(files)?,
             counts: Counts::default(),
             warnings: Vec::new(),
@@ -130,6 +131,7 @@ pub fn resume(
             rolling: rolling.as_ref(),
             bearing: &bearing,
             ahead: PointsAhead::new(scope, &solve, group, Some(taken)),
+            laps: Laps::default(),
             files,
             counts,
             warnings,
@@ -189,7 +191,7 @@ fn turning<'m>(
 }
 
 /// The equilibrium of an instant.
-fn point(bearing: &QuasiStaticMotion<'_>, n: u64, from: Option<&PointStart>) -> PointAnswer<()> {
+fn point(bearing: &QuasiStaticMotion<'_>, n: u64, from: Option<&PointStart>) -> PointAnswer<SolvedPoint, ()> {
     Ok((bearing.point(n, from).map_err(Failure::solving)?, ()))
 }
 
@@ -204,7 +206,7 @@ struct Counts {
 
 /// What a run goes on with.
 struct RestoredPoint {
-    taken: Taken,
+    taken: Taken<PointStart>,
     counts: Counts,
     warnings: Vec<String>,
     /// What is known of the whole run by `[output.reduction]`.
@@ -212,7 +214,7 @@ struct RestoredPoint {
 }
 
 /// The arrays of a step file.
-fn arrays(taken: &Taken, counts: Counts, warnings: &[String]) -> Arrays {
+fn arrays(taken: &Taken<PointStart>, counts: Counts, warnings: &[String]) -> Arrays {
     let start = (taken.start != taken.before).then_some(&taken.start);
     let from = taken.from.as_ref().filter(|from| **from != taken.start);
     let mut arrays = rest_state::store_point(&taken.before, [start, from]);
@@ -286,7 +288,9 @@ struct QuasiStaticRun<'a, 's, 'scope> {
     model: &'a Model,
     rolling: Option<&'a Rolling>,
     bearing: &'a QuasiStaticMotion<'a>,
-    ahead: PointsAhead<'s, 'scope, ()>,
+    ahead: PointsAhead<'s, 'scope, SolvedPoint, ()>,
+    /// Wall time of all points, summed over threads.
+    laps: Laps,
     files: Files,
     counts: Counts,
     /// Those of the first instant that had any.
@@ -336,7 +340,7 @@ impl QuasiStaticRun<'_, '_, '_> {
         let solver = &self.bearing.solver;
         let forecast = Side::BOTH.map(|side| solver.ring(side).map(|r| r.solver.memory));
         let forecast = Forecasts::of_points(forecast, model, 1 + settings.n_steps);
-        let laps = solver.laps_with(&self.ahead.laps);
+        let laps = solver.laps_with(&self.laps);
         let costs = agree(self.files.finish(read, forecast, laps, start));
         // A run that failed says why, not what its failure did to the files; one that stopped must have its step.
         let costs = match (costs, &ended) {
@@ -418,6 +422,7 @@ impl OverInstants for QuasiStaticRun<'_, '_, '_> {
     fn advance(&mut self, n: u64, _progress: &mut Progress) -> Result<(), Failure> {
         let next = self.ahead.take();
         let (next, ()) = next.map_err(|failure| instants::failed(self, "the last equilibrium", failure))?;
+        self.laps.merge(&next.laps);
         self.last = next.solution;
         self.step = n;
         self.count();

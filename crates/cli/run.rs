@@ -6,7 +6,7 @@ use std::time::Instant;
 
 use anyhow::anyhow;
 use contact::{BearingGeometry, Side};
-use dynamics::points::{PointStart, points_per_start};
+use dynamics::points::{PointStart, SolvedPoint, points_per_start};
 use dynamics::{Model, Pose, StaticSolution, StaticSolver};
 use results::disk::Forecast;
 use results::failure::{Failure, agree, of_all};
@@ -31,7 +31,7 @@ use crate::progress::Progress;
 use crate::quasi_static;
 use crate::remarks::Remarks;
 use crate::shared::note_unshared;
-use crate::{several, several_modes, several_motion, several_quasi_static, several_rest};
+use crate::{several_modes, several_motion, several_quasi_static, several_rest};
 
 /// One load case of a run: the swept value (None for a static scene) and its scene.
 pub type SweptScene = (Option<f64>, Scene);
@@ -60,7 +60,7 @@ pub fn run(
         }
     };
     if let Some(part) = part {
-        part.check(&scene)?;
+        part.check(&scene.path, &scene.analysis)?;
     }
     let dir = folder::choose(path, out)?;
     note_unshared(&scene);
@@ -96,7 +96,7 @@ fn run_points(
     let solver = StaticSolver::new(&model).map_err(Failure::solving)?;
     say_solvers(&solver, &progress);
     let rings = model.rings.clone();
-    let solve = |n: u64, from: Option<&PointStart>| -> PointAnswer<Model> {
+    let solve = |n: u64, from: Option<&PointStart>| -> PointAnswer<SolvedPoint, Model> {
         let model = model_with_rings(&points[n as usize].1, rings.clone())?;
         let found = solver.point(&model, &Pose::default(), from);
         Ok((found.map_err(Failure::solving)?, model))
@@ -114,6 +114,7 @@ fn run_points(
             placed: model.geometry,
             model,
             ahead: PointsAhead::new(scope, &solve, group, None),
+            laps: Laps::default(),
             survey,
             files: None,
             solutions: Vec::new(),
@@ -166,7 +167,9 @@ struct LoadCases<'a, 's, 'scope> {
     /// Geometry with which the rings were placed.
     placed: BearingGeometry,
     model: Model,
-    ahead: PointsAhead<'s, 'scope, Model>,
+    ahead: PointsAhead<'s, 'scope, SolvedPoint, Model>,
+    /// Wall time of all points, summed over threads.
+    laps: Laps,
     /// What the files begin with, until there are some.
     survey: Survey,
     /// The first solution makes the folder: a scene that has none leaves no files.
@@ -188,13 +191,13 @@ struct SolvedCases {
 }
 
 impl LoadCases<'_, '_, '_> {
-    fn solved(mut self) -> SolvedCases {
+    fn solved(self) -> SolvedCases {
         SolvedCases {
             model: self.model,
             files: self.files,
             solutions: self.solutions,
             n_points: self.points.len() as u64,
-            laps: std::mem::take(&mut self.ahead.laps),
+            laps: self.laps,
         }
     }
 
@@ -242,11 +245,8 @@ impl OverInstants for LoadCases<'_, '_, '_> {
     }
 
     fn stop(&mut self, reason: &str) -> Failure {
-        let (solved, last) = (self.solutions.len() as u64, self.due().last);
-        let next = self.first + solved;
-        let others =
-            format!("for the others: the same command with --points {next}-{last} and another --out");
-        instants::stopped_sweep(reason, (self.first, solved, last), self.dir, &others)
+        let counted = (self.first, self.solutions.len() as u64, self.due().last);
+        instants::stopped_sweep(reason, counted, self.dir)
     }
 
     fn advance(&mut self, n: u64, _progress: &mut Progress) -> Result<(), Failure> {
@@ -255,6 +255,7 @@ impl OverInstants for LoadCases<'_, '_, '_> {
         let found = self.ahead.take();
         let (found, model) =
             found.map_err(|failure| of_all(at_point(failure, self.scene, *value, self.dir, done)))?;
+        self.laps.merge(&found.laps);
         let solution = found.solution;
         self.model = model;
         let snapshot = Snapshot::of_equilibrium(&solution, rolling(point).as_ref());
@@ -308,14 +309,16 @@ fn run_list(
     (limits, part): (&Limits, Option<SweepPart>),
     start: Instant,
 ) -> Result<PathBuf, Failure> {
-    several::refuse(part.map(|_| "--points"), list)?;
+    if let Some(part) = part {
+        part.check(&list.path, &list.analysis)?;
+    }
     let dir = folder::choose(&list.path, out)?;
     note_unshared(&list.bearings[0].scene);
     match &list.analysis {
         Analysis::Dynamic(dynamic) => several_motion::run(list, dynamic, &dir, limits, start)?,
         Analysis::QuasiStatic(settings) => several_quasi_static::run(list, settings, &dir, limits, start)?,
         Analysis::Modes(wanted) => several_modes::run(list, wanted, &dir, limits, start)?,
-        Analysis::Static | Analysis::Sweep(_) => several_rest::run(list, &dir, limits, start)?,
+        Analysis::Static | Analysis::Sweep(_) => several_rest::run(list, part, &dir, limits, start)?,
     }
     Ok(dir)
 }

@@ -162,14 +162,3 @@ pub fn say_types(solver: &AssemblySolver, assembly: &Assembly, progress: &Progre
         }
     }
 }
-
-/// Refuses options that are for one bearing.
-pub fn refuse(option: Option<&str>, scene: &SeveralScene) -> Result<(), Failure> {
-    match option {
-        None => Ok(()),
-        Some(option) => Err(Failure::User(anyhow!(
-            "{option} is not for a list of bearings, and {} has one; leave it out",
-            scene.path.display()
-        ))),
-    }
-}

@@ -3,8 +3,10 @@
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
+use assembly::points::{AssemblyPoint, AssemblyPointStart, points_per_start};
 use assembly::{Assembly, AssemblySolution, AssemblySolver};
 use contact::Side;
+use dynamics::Pose;
 use results::failure::{Failure, agree, of_all};
 use results::files::Files;
 use results::memory::Forecasts;
@@ -16,10 +18,12 @@ use results::shown::Shown;
 use results::stop::Stop;
 use results::summary::{Findings, READ, TOTAL};
 use results::survey::Survey;
-use scene::{KeptFields, SeveralScene, assembly_with_rings};
+use scene::{KeptFields, Rings, SeveralScene, assembly_with_rings};
+use timer::Laps;
 
 use crate::instants::{self, Due, OverInstants, WrittenSteps};
-use crate::options::Limits;
+use crate::options::{Limits, SweepPart};
+use crate::points_ahead::{Grouping, PointAnswer, PointsAhead};
 use crate::progress::Progress;
 use crate::several::{
     SeveralPoint, at_point, column, make_folder, placed, points, require_same_list, say_types, snapshot,
@@ -28,10 +32,18 @@ use crate::several::{
 use crate::several_files::close_bearing;
 use crate::several_read::{ReadList, read_list, require_memory_of_all};
 
-/// Runs a scene at rest; its results go into a folder.
-pub fn run(scene: &SeveralScene, dir: &Path, limits: &Limits, start: Instant) -> Result<(), Failure> {
+/// Runs a scene at rest, or a part of its sweep; its results go into a folder.
+pub fn run(
+    scene: &SeveralScene,
+    part: Option<SweepPart>,
+    dir: &Path,
+    limits: &Limits,
+    start: Instant,
+) -> Result<(), Failure> {
     require_same_list(scene)?;
-    let points = agree(points(scene))?;
+    let all = agree(points(scene))?;
+    let chosen = part.map_or(0..all.len(), SweepPart::range);
+    let (first, points) = (chosen.start as u64, &all[chosen]);
     let mut progress = Progress::new(points.len() as u64);
     progress.stage("reading meshes");
     let ReadList {
@@ -45,74 +57,129 @@ pub fn run(scene: &SeveralScene, dir: &Path, limits: &Limits, start: Instant) ->
     progress.stage("factoring the stiffness of the rings");
     let solver = AssemblySolver::new(&assembly).map_err(solving)?;
     say_types(&solver, &assembly, &progress);
-    let mut cases = ListCases {
-        scene,
-        points: &points,
-        assembly,
-        solver,
-        surveys,
-        files: None,
-        solved: 0,
-        last: None,
-        iterations: 0,
-        warnings: doubts,
-        written: WrittenSteps::default(),
-        dir,
+    let rings: Vec<Rings> = assembly.bearings.iter().map(|b| b.model.rings.clone()).collect();
+    let solve = |n: u64, from: Option<&AssemblyPointStart>| -> PointAnswer<AssemblyPoint, Assembly> {
+        let mut assembly = assembly_with_rings(&points[n as usize].1, rings.clone())?;
+        let poses = vec![Pose::default(); rings.len()];
+        let found = solver.point(&mut assembly, &poses, from);
+        Ok((found.map_err(solving)?, assembly))
+    };
+    let group = Grouping {
+        size: points_per_start(&assembly),
+        last: points.len() as u64 - 1,
     };
     let mut stop = agree(Stop::of_points(points.len(), start, limits.wall_time).map_err(Failure::from))?;
-    let ended = instants::run(&mut cases, 0, stop.as_mut(), &mut progress);
+    let (cases, ended) = rayon::in_place_scope(|scope| {
+        let mut cases = ListCases {
+            scene,
+            points,
+            first,
+            ahead: PointsAhead::new(scope, &solve, group, None),
+            solved: SolvedLists::of_none(assembly, doubts),
+            surveys,
+            written: WrittenSteps::default(),
+            dir,
+        };
+        let ended = instants::run(&mut cases, first, stop.as_mut(), &mut progress);
+        (cases.solved, ended)
+    });
     progress.finish();
-    cases.conclude(ended, (read, start))
+    cases.conclude((scene, solver), ended, dir, (read, start))
 }
 
 /// Load cases of a list under way: their numbers stand for times.
-struct ListCases<'a> {
+struct ListCases<'a, 's, 'scope> {
     scene: &'a SeveralScene,
     points: &'a [SeveralPoint],
-    /// At the last load case that was solved.
-    assembly: Assembly,
-    solver: AssemblySolver,
+    /// Number of the first of them in the whole sweep.
+    first: u64,
+    ahead: PointsAhead<'s, 'scope, AssemblyPoint, Assembly>,
+    solved: SolvedLists,
     /// What the files begin with, until there are some.
     surveys: Vec<Survey>,
+    written: WrittenSteps,
+    dir: &'a Path,
+}
+
+/// What has been solved of the load cases.
+struct SolvedLists {
+    /// At the last load case that was solved.
+    assembly: Assembly,
     /// The first solution makes the folder: a scene that has none leaves no files.
     files: Option<SeveralFiles>,
-    /// Number of load cases that were solved.
-    solved: u64,
+    /// Number of load cases.
+    n: u64,
     /// Solution of the last of them.
     last: Option<AssemblySolution>,
     /// Newton iterations so far.
     iterations: usize,
     warnings: Vec<String>,
-    written: WrittenSteps,
-    dir: &'a Path,
+    /// Wall time of all points by type of bearing, summed over threads.
+    laps: Vec<Laps>,
 }
 
-impl ListCases<'_> {
+impl ListCases<'_, '_, '_> {
+    fn point(&self, n: u64) -> &SeveralPoint {
+        &self.points[(n - self.first) as usize]
+    }
+
     /// What has been solved last, with its files and its load case.
     fn last(&mut self) -> (&mut SeveralFiles, SolvedList<'_>) {
-        let (value, point) = &self.points[self.solved as usize - 1];
+        let (value, point) = &self.points[self.solved.n as usize - 1];
         let solved = SolvedList {
-            step: self.solved - 1,
+            step: self.first + self.solved.n - 1,
             value: *value,
             point,
-            assembly: &self.assembly,
-            solution: self.last.as_ref().expect("a load case has been solved"),
+            assembly: &self.solved.assembly,
+            solution: self.solved.last.as_ref().expect("a load case has been solved"),
         };
-        let files = self.files.as_mut();
+        let files = self.solved.files.as_mut();
         (files.expect("a solution has made the files"), solved)
+    }
+}
+
+impl SolvedLists {
+    fn of_none(assembly: Assembly, warnings: Vec<String>) -> SolvedLists {
+        SolvedLists {
+            assembly,
+            files: None,
+            n: 0,
+            last: None,
+            iterations: 0,
+            warnings,
+            laps: Vec::new(),
+        }
+    }
+
+    /// Takes note of a load case whose words in messages are `at`.
+    fn take(&mut self, (point, assembly): (AssemblyPoint, Assembly), at: &str) {
+        let AssemblyPoint { solution, laps, .. } = point;
+        self.warnings.extend(warnings_at(at, &assembly, &solution));
+        self.iterations += solution.shaft.iterations;
+        self.laps.resize_with(laps.len(), Laps::default);
+        let pairs = self.laps.iter_mut().zip(&laps);
+        pairs.for_each(|(sum, laps)| sum.merge(laps));
+        (self.assembly, self.last) = (assembly, Some(solution));
+        self.n += 1;
     }
 
     /// Closes the files, writes the summary of the load cases that were solved, and prints the results of a run without
     /// a failure; it was read until `read`, s, after `start`.
-    fn conclude(mut self, ended: Result<(), Failure>, (read, start): (f64, Instant)) -> Result<(), Failure> {
+    fn conclude(
+        mut self,
+        (scene, mut solver): (&SeveralScene, AssemblySolver),
+        ended: Result<(), Failure>,
+        dir: &Path,
+        (read, start): (f64, Instant),
+    ) -> Result<(), Failure> {
         let (Some(files), Some(last)) = (self.files.take(), self.last.take()) else {
             return ended;
         };
-        let (scene, assembly) = (self.scene, &self.assembly);
-        let mut laps = self.solver.laps();
+        solver.add_laps(&self.laps);
+        let mut laps = solver.laps();
         laps.add(READ, read);
         laps.add(TOTAL, start.elapsed().as_secs_f64());
-        let seats = files.finish(scene, (assembly, &last), &self.solver, start);
+        let seats = files.finish(scene, (&self.assembly, &last), &solver, start);
         // A run that failed says why, not what its failure did to the files.
         let seats = match (seats, &ended) {
             (Err(_), Err(_)) => return ended,
@@ -127,22 +194,22 @@ impl ListCases<'_> {
             warnings: self.warnings,
             laps,
         };
-        let shown = ListState::of_equilibrium(assembly, &last);
-        let summary = SeveralSummary::new(scene, assembly, &shown, findings);
-        agree(summary.write(self.dir).map_err(Failure::from))?;
+        let shown = ListState::of_equilibrium(&self.assembly, &last);
+        let summary = SeveralSummary::new(scene, &self.assembly, &shown, findings);
+        agree(summary.write(dir).map_err(Failure::from))?;
         ended?;
         if column(scene).is_none() {
-            print_solution(assembly, &shown);
+            print_solution(&self.assembly, &shown);
         }
         summary.print_costs();
         Ok(())
     }
 }
 
-impl OverInstants for ListCases<'_> {
+impl OverInstants for ListCases<'_, '_, '_> {
     fn due(&self) -> Due {
         Due {
-            last: self.points.len() as u64 - 1,
+            last: self.first + self.points.len() as u64 - 1,
             tables_every: 1,
             files_every: 1,
         }
@@ -157,7 +224,7 @@ impl OverInstants for ListCases<'_> {
     }
 
     fn now(&self) -> u64 {
-        self.solved - 1
+        self.first + self.solved.n - 1
     }
 
     fn time(&self, n: u64) -> f64 {
@@ -165,35 +232,25 @@ impl OverInstants for ListCases<'_> {
     }
 
     fn stage(&self, n: u64, _first: u64) -> Option<String> {
-        Some(stage_text(column(self.scene), self.points[n as usize].0))
+        Some(stage_text(column(self.scene), self.point(n).0))
     }
 
     fn stop(&mut self, reason: &str) -> Failure {
-        let next = words_of(column(self.scene), self.points[self.solved as usize].0);
-        let others =
-            format!("{next}the first of the others, which a sweep of their values has in another folder");
-        instants::stopped_sweep(reason, (0, self.solved, self.due().last), self.dir, &others)
+        let counted = (self.first, self.solved.n, self.due().last);
+        instants::stopped_sweep(reason, counted, self.dir)
     }
 
     fn advance(&mut self, n: u64, _progress: &mut Progress) -> Result<(), Failure> {
-        let ((value, point), column) = (&self.points[n as usize], column(self.scene));
-        let rings = self.assembly.bearings.iter().map(|b| b.model.rings.clone());
-        let mut assembly = assembly_with_rings(point, rings.collect())?;
-        let found = self.solver.solve(&mut assembly, self.last.as_ref());
-        let found = found.map_err(|error| of_all(at_point(solving(error), column, *value)))?;
-        if self.files.is_none() {
+        let (value, column) = (self.point(n).0, column(self.scene));
+        let found = self.ahead.take();
+        let (point, assembly) = found.map_err(|failure| of_all(at_point(failure, column, value)))?;
+        if self.solved.files.is_none() {
             let surveys = std::mem::take(&mut self.surveys);
-            self.files = Some(SeveralFiles::create(
-                (self.scene, surveys),
-                &assembly,
-                &found,
-                self.dir,
-            )?);
+            let first = (self.scene, surveys);
+            let files = SeveralFiles::create(first, &assembly, &point.solution, self.dir)?;
+            self.solved.files = Some(files);
         }
-        let at = words_of(column, *value);
-        self.warnings.extend(warnings_at(&at, &assembly, &found));
-        self.iterations += found.shaft.iterations;
-        (self.assembly, self.last, self.solved) = (assembly, Some(found), n + 1);
+        self.solved.take((point, assembly), &words_of(column, value));
         Ok(())
     }
 

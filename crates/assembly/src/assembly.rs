@@ -47,7 +47,7 @@ pub struct AssemblySolver {
     type_of: Vec<usize>,
     columns: Vec<ContactColumns>,
     /// Bodies that carry several bearings.
-    bodies: Vec<SharedBody>,
+    bodies: Arc<[SharedBody]>,
 }
 
 /// Equilibrium of an assembly.
@@ -173,7 +173,7 @@ impl AssemblySolver {
             solvers,
             columns: type_of.iter().map(|_| ContactColumns::default()).collect(),
             type_of,
-            bodies: shared_bodies(&assembly.bearings)?,
+            bodies: shared_bodies(&assembly.bearings)?.into(),
         })
     }
 
@@ -211,6 +211,36 @@ impl AssemblySolver {
     /// No forces on the bodies that carry several bearings: so many as [`AssemblyStart::on_bodies`] has.
     pub fn no_forces_on_bodies(&self) -> Vec<Vec<f64>> {
         self.bodies.iter().map(SharedBody::none).collect()
+    }
+
+    /// Another solver with the same rings and these tangents of the contacts, or none; its time is its own.
+    pub fn beside(&self, columns: Option<Vec<ContactColumns>>) -> AssemblySolver {
+        let none = || self.type_of.iter().map(|_| ContactColumns::default()).collect();
+        let beside = |solver: &StaticSolver| solver.beside(ContactColumns::default());
+        AssemblySolver {
+            solvers: self.solvers.iter().map(beside).collect(),
+            rigid: self.rigid.iter().map(beside).collect(),
+            type_of: self.type_of.clone(),
+            columns: columns.unwrap_or_else(none),
+            bodies: Arc::clone(&self.bodies),
+        }
+    }
+
+    /// The tangents of the contacts by bearing, and the wall time so far by type, effects apart.
+    pub fn into_point(self) -> (Vec<ContactColumns>, Vec<Laps>) {
+        let pairs = self.solvers.into_iter().zip(self.rigid);
+        let laps = pairs.map(|(solver, rigid)| {
+            let mut laps = solver.timing;
+            laps.merge(&rigid.timing);
+            laps
+        });
+        (self.columns, laps.collect())
+    }
+
+    /// Takes the wall time of a point that was solved beside.
+    pub fn add_laps(&mut self, of_point: &[Laps]) {
+        let pairs = self.solvers.iter_mut().zip(of_point);
+        pairs.for_each(|(solver, laps)| solver.timing.merge(laps));
     }
 
     /// Wall time so far.

@@ -23,6 +23,7 @@ pub mod modes;
 pub mod motion;
 pub mod newton;
 pub mod place;
+pub mod points;
 pub mod shaft;
 mod side_by_side;
 pub mod stiffness;

@@ -40,6 +40,9 @@ const PLANAR: f64 = 1e-6;
 /// Share of the motion along z in the kinetic energy of the shaft above which a mode is axial.
 const AXIAL: f64 = 0.5;
 
+/// Share of the motion across z in the kinetic energy of the shaft up to which it is none.
+const ACROSS: f64 = 1e-12;
+
 /// |Im|/|lambda| up to which an eigenvalue counts as real.
 ///
 /// Round-off splits m equal real eigenvalues that share one vector by eps^(1/m) |lambda|: 2e-8 of two, as at critical
@@ -356,13 +359,15 @@ impl TurningShaft {
         let (of_shaft, axial, standing, roundness) = match &self.forms {
             Some(forms) => {
                 let around = 2.0 * form(&forms.across, &parts[0], &parts[1]);
-                let roundness = self.along(around, of(&forms.radial));
-                (of(&forms.mass), of(&forms.axial), of(&forms.standing), roundness)
+                let of_shaft = of(&forms.mass);
+                let roundness = self.along(around, of(&forms.radial), of_shaft);
+                (of_shaft, of(&forms.axial), of(&forms.standing), roundness)
             }
             None => {
                 let axial = (0..self.shaft.len()).filter(|&i| self.shaft[i].dof == 2);
                 let axial: f64 = axial.map(|i| energy(i..i + 1)).sum();
-                (energy(0..self.shaft.len()), axial, 0.0, self.roundness(&x))
+                let of_shaft = energy(0..self.shaft.len());
+                (of_shaft, axial, 0.0, self.roundness(&x, of_shaft))
             }
         };
         let all = energy(0..n).max(f64::MIN_POSITIVE);
@@ -381,8 +386,8 @@ impl TurningShaft {
         }
     }
 
-    /// The roundness by the rows of the shaft.
-    fn roundness(&self, x: &[ComplexNumber]) -> f64 {
+    /// The roundness by the rows of the shaft, which has this kinetic energy.
+    fn roundness(&self, x: &[ComplexNumber], of_shaft: f64) -> f64 {
         let (mut along, mut against) = (0.0, 0.0);
         for [first, second] in [[0, 1], [3, 4]] {
             for (i, row) in self.shaft.iter().enumerate().filter(|(_, row)| row.dof == first) {
@@ -397,12 +402,14 @@ impl TurningShaft {
                 against += mass * ((a + d).powi(2) + (b - c).powi(2));
             }
         }
-        self.along(along - against, along + against)
+        // Twice the energies.
+        self.along(along - against, along + against, 2.0 * of_shaft)
     }
 
-    /// Energy that goes round along the spin less that against it, from x to y, over their sum; 0 without a spin.
-    fn along(&self, difference: f64, sum: f64) -> f64 {
-        if self.speed == 0.0 || sum == 0.0 {
+    /// Energy that goes round along the spin less that against it, from x to y, over their sum; 0 without a spin, and
+    /// where what goes across is round-off of the whole.
+    fn along(&self, difference: f64, sum: f64, whole: f64) -> f64 {
+        if self.speed == 0.0 || sum <= ACROSS * whole {
             return 0.0;
         }
         self.speed.signum() * difference / sum

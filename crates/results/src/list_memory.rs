@@ -16,7 +16,7 @@ use scene::{Analysis, Modes};
 
 use crate::failure::Failure;
 use crate::memory::{
-    Bound, MOST_PER_NODE, bound, queued_steps, require, rings_at_once, rings_of, with_bodies,
+    Bound, MOST_PER_NODE, bound, bytes_of_points, queued_steps, require, rings_at_once, rings_of, with_bodies,
 };
 use crate::seat::tied;
 
@@ -99,10 +99,19 @@ pub fn forecast_list(analysis: &Analysis, bearings: &[BearingMemory<'_>]) -> (us
         making = making.max(forecast_peak(made, at_once).saturating_sub(program + made_lasting));
         lasting += made_lasting;
     }
-    let rest = program + lasting + making;
+    let rest = program + lasting + making + points_of(analysis, bearings);
     let files = BEARING_BYTES * bearings.len().saturating_sub(1);
     let with_all = |peak: usize| with_bodies(peak, models_of(bearings)) + files;
     (with_all(rest), steps_of(analysis, bearings).map(with_all))
+}
+
+/// What the load cases of a sweep hold beside the rings, of which several are solved at the same time, bytes.
+fn points_of(analysis: &Analysis, bearings: &[BearingMemory<'_>]) -> usize {
+    let Analysis::Sweep(sweep) = analysis else {
+        return 0;
+    };
+    let listed = bearings.iter().map(|bearing| (bearing.rest, bearing.model));
+    bytes_of_points(listed, sweep.points.len() as u64)
 }
 
 /// Forecast of the steps of a motion without bodies, bytes; None where there is none.

@@ -71,17 +71,26 @@ impl Forecasts {
 /// What is held beside the rings when points are solved ahead of the one that is written, bytes: displacements of all
 /// of them, load and displacements under way on every thread, and there, beyond two, the columns of a ring.
 fn points_bytes(rings: [Option<RingMemory>; 2], model: &Model, n_points: u64) -> usize {
+    bytes_of_points([(rings, model)].into_iter(), n_points)
+}
+
+/// The same of the bearings of a list.
+pub(crate) fn bytes_of_points<'m>(
+    bearings: impl Iterator<Item = ([Option<RingMemory>; 2], &'m Model)> + Clone,
+    n_points: u64,
+) -> usize {
     let n_threads = threads_of_points();
-    if n_threads == 1 || points_per_start(model) == 1 {
+    if n_threads == 1 || bearings.clone().any(|(_, model)| points_per_start(model) == 1) {
         return 0;
     }
     let after_first = usize::try_from(n_points.saturating_sub(1)).unwrap_or(usize::MAX);
     let (ahead, at_once) = (most_ahead(n_threads).min(after_first), n_threads.min(after_first));
-    let flexible = model.rings.iter().flatten();
+    let flexible = bearings
+        .clone()
+        .flat_map(|(_, model)| model.rings.iter().flatten());
     let field: usize = flexible.map(|ring| size_of::<f64>() * ring.mesh.n_dofs()).sum();
-    let columns = rings
-        .iter()
-        .flatten()
+    let columns = bearings
+        .flat_map(|(rings, _)| rings.into_iter().flatten())
         .map(|ring| ring.columns.saturating_sub(ring.kept))
         .max();
     (ahead + 2 * at_once) * field + at_once.saturating_sub(2) * columns.unwrap_or(0)
