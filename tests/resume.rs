@@ -301,6 +301,38 @@ fn a_changed_mesh_is_refused() {
     refused(&dir, &["whole", "--step", "3"], &["outer.msh"]);
 }
 
+/// Wrong: a run would go on with another surface than it began with, and its tables hold both.
+#[test]
+fn a_changed_table_of_a_surface_is_refused() {
+    let dir = small_motion();
+    let table = |height: &str| {
+        let rows = (0..36).map(|i| format!("{},0,{}\n", 10 * i, if i % 2 == 0 { height } else { "0" }));
+        format!(
+            "azimuth_deg,groove_angle_deg,height_um\n{}",
+            rows.collect::<String>()
+        )
+    };
+    let named = "\n[[profiles.table]]\nring = \"outer\"\nfile = \"roundness.csv\"\n";
+    dir.write("scene.toml", dir.text("scene.toml") + named);
+    dir.write("roundness.csv", table("0.02"));
+    let run = [
+        "run",
+        "scene.toml",
+        "--out",
+        "whole",
+        "--set",
+        "output.stress=none",
+    ];
+    let outcome = dir.raceway(&[&run[..], &RIGID].concat());
+    assert_eq!(outcome.code, Some(0), "{}", outcome.stderr);
+    dir.write("roundness.csv", table("0.05"));
+    let said = "the file of profiles.table.0.file has changed since the run: it was (";
+    refused(&dir, &["whole", "--step", "3"], &[said, " bytes, checksum "]);
+    refused(&dir, &["whole", "--step", "3", "--stored-scene"], &[said]);
+    std::fs::remove_file(dir.path("roundness.csv")).unwrap();
+    refused(&dir, &["whole", "--step", "3"], &["cannot read", "roundness.csv"]);
+}
+
 /// Wrong: a request that cannot be met would do something else, or not say what is there.
 #[test]
 fn what_cannot_be_resumed_is_refused() {

@@ -15,7 +15,7 @@ use std::f64::consts::{PI, TAU};
 
 use serde_json::Value;
 
-use crate::several::{succeeds, with_type};
+use crate::several::{pair, succeeds, with_type};
 use crate::util::Dir;
 
 const YOUNG: f64 = 207e9;
@@ -29,6 +29,43 @@ const BEARINGS: [(&str, f64); 2] = [("front", 0.1), ("rear", 0.6)];
 const DISC: f64 = 0.4;
 /// Mass, kg, transverse and polar inertia, kg m2, of the disc.
 const OF_DISC: [f64; 3] = [8.0, 0.02, 0.015];
+
+/// Wrong: modes would depend on the speed of the scene, and the place of the shaft on a force that turns with it.
+#[test]
+fn an_unbalance_is_no_part_of_the_place_about_which_modes_swing() {
+    let dir = pair("[dynamic]\nduration = \"1 ms\"\nstep = \"10 us\"");
+    let campbell = |out: &str, rpm: u32| {
+        let unbalance = "effects.unbalance={mass=\"20 g\",eccentricity=\"5 mm\",position=\"60 mm\"}";
+        let speed = format!("speed.inner=\"{rpm} rpm\"");
+        let speeds = ["--speeds", "0..30000:30000", "--out", out];
+        let sets = ["--set", unbalance, "--set", &speed];
+        let said = succeeds(
+            &dir,
+            &[&["campbell", "pair.toml"], &speeds[..], &sets[..]].concat(),
+        );
+        let note = "note: [effects.unbalance] turns with the shaft and is left out of the equilibrium";
+        assert!(said.stderr.contains(note), "{}", said.stderr);
+        dir.text(&format!("{out}/campbell.csv"))
+    };
+    assert!(campbell("slow", 1) == campbell("fast", 30000));
+    let refused = dir.raceway(&[
+        "campbell",
+        "pair.toml",
+        "--speeds",
+        "0..1000:500",
+        "--out",
+        "no",
+        "--set",
+        "speed={inner=\"-9000 rpm\",outer=\"2000 rpm\"}",
+    ]);
+    let text = "error: speed.inner is -9000 rpm and speed.outer 2000 rpm, and the speeds of the shaft in modes are \
+                positive; expected speed.inner above 0: give both speeds the other sign";
+    assert!(
+        refused.code == Some(2) && refused.stderr.contains(text),
+        "{}",
+        refused.stderr
+    );
+}
 
 /// Balls without mass, a rigid pair without load.
 fn rotor() -> Dir {

@@ -21,13 +21,14 @@ use results::whole::require_free;
 use scene::{AnyScene, Scene, build_model, doubts, model_with_rings};
 
 use crate::campbell_files::{
-    self, Diagram, MODES_OF_BEAM, cage_speed, growing, keep_modes_of_shaft, require_one_point, without_stress,
+    self, Diagram, MODES_OF_BEAM, cage_speed, growing, keep_modes_of_shaft, require_forward,
+    require_one_point, without_stress,
 };
 use crate::damping::{damping_note, laws};
 use crate::progress::Progress;
 use crate::several::solving;
 use crate::several_campbell;
-use crate::stiffness::{instant, pose_at, require_load};
+use crate::stiffness::{instant, pose_at, require_load, steady};
 
 /// Most speeds of a diagram.
 const MOST_SPEEDS: usize = 1000;
@@ -97,7 +98,7 @@ fn parse_speeds(text: &str) -> Result<SpeedRange, String> {
 
 /// Computes the modes and writes them.
 pub fn campbell(command: &CampbellCommand) -> Result<(), Failure> {
-    let scene = match AnyScene::load(&command.scene, &command.overrides)? {
+    let scene = match steady(AnyScene::load(&command.scene, &command.overrides)?) {
         AnyScene::One(scene) => *scene,
         AnyScene::Several(list) => {
             let speeds = command.speeds.values();
@@ -106,6 +107,7 @@ pub fn campbell(command: &CampbellCommand) -> Result<(), Failure> {
     };
     require_one_point(&scene.analysis, &scene.path)?;
     let time = instant((&scene.analysis, &scene.path), None)?;
+    require_forward(scene.speed.as_ref(), time)?;
     require_free(&command.out, &[CAMPBELL_TABLE, CAMPBELL_LINES])?;
     let (modes, model, warnings) = diagram(scene.clone().moving_by_modes(), time, command)?;
     let diagram = Diagram {
@@ -148,6 +150,23 @@ fn modes_of(shaft: TurningShaft) -> Result<Vec<WhirlMode>, Failure> {
     shaft.modes().map_err(Failure::solving)
 }
 
+/// What a user should know that modes over the speed leave out.
+fn left_out(scene: &Scene, model: &Model) -> impl Iterator<Item = String> {
+    without_stress([model])
+        .into_iter()
+        .chain(without_sliding_mass(scene))
+}
+
+/// The same where the outer ring slides with a mass of its own.
+fn without_sliding_mass(scene: &Scene) -> Option<String> {
+    let spring = scene.effects.spring_preload.as_ref();
+    spring.filter(|spring| spring.mass() > 0.0).map(|_| {
+        "effects.spring_preload.mass is left out: in modes over the speed the outer ring slides without inertia; a \
+         [modes] scene has it"
+            .to_string()
+    })
+}
+
 /// Modes at all speeds.
 fn diagram(
     mut scene: Scene,
@@ -160,7 +179,7 @@ fn diagram(
     let (mut model, _) = build_model(&scene)?;
     let mut warnings = doubts(&scene, &model);
     say_doubts(&warnings);
-    warnings.extend(without_stress([&model]));
+    warnings.extend(left_out(&scene, &model));
     let bodies = TurningAssembly::of_one("bearing", &model).map_err(solving)?;
     let number = number_of_modes(command, &model, bodies.is_some())?;
     let inertia = turning_inertia(&model).map_err(Failure::solving)?;
@@ -183,7 +202,8 @@ fn diagram(
         require_load(&solution).map_err(at)?;
         let linear = Linearisation::new(&model, &solver, &solution, laws(&scene.effects));
         let linear = linear.map_err(Failure::solving).map_err(at)?;
-        let linear = linear.going_round(model.ball_mass(), cage_speed(&scene, time));
+        let cage = cage_speed(&scene, time);
+        let linear = linear.passing(cage).going_round(model.ball_mass(), cage);
         let modes = match &bodies {
             None => TurningShaft::new(&model, &linear, inertia, speeds[0]).map_err(Failure::solving),
             Some(bodies) => in_bodies(bodies, (&model, &linear), (&solver, &solution), speeds[0]),

@@ -1,18 +1,19 @@
 //! What `raceway campbell` of one bearing and of a list have in common: what they refuse, and what they write.
 
+use std::f64::consts::PI;
 use std::path::Path;
 
 use anyhow::anyhow;
 use comm::print;
 use contact::{BearingGeometry, Side};
 use dynamics::Model;
-use dynamics::kinematics::SlipRatios;
+use dynamics::kinematics::{RingSpeeds, SlipRatios};
 use dynamics::whirl::WhirlMode;
 use results::campbell::{CAMPBELL_LINES, CAMPBELL_TABLE, ModesAtSpeed, print_campbell, write_campbell};
 use results::failure::Failure;
 use results::summary::print_warnings;
 use results::whole::make_asked_folder;
-use scene::{Analysis, Scene, rolling};
+use scene::{Analysis, Scene, SeveralScene, rolling};
 
 use crate::linear_figures::draw;
 
@@ -38,6 +39,28 @@ pub fn keep_modes_of_shaft(modes: &mut Vec<WhirlMode>, number: usize) {
 /// How fast the balls of a bearing go round with the cage at a time in s, rad/s; 0 without a speed.
 pub fn cage_speed(scene: &Scene, time: f64) -> f64 {
     rolling(scene).map_or(0.0, |rolling| rolling.cage_speed(time))
+}
+
+/// The same of all bearings of a list, each in its own frame.
+pub fn cage_speeds(scene: &SeveralScene, time: f64) -> Vec<f64> {
+    let bearings = scene.bearings.iter();
+    bearings.map(|bearing| cage_speed(&bearing.scene, time)).collect()
+}
+
+/// Refuses speeds of a shaft that turns backwards in a ring that turns: that is another machine than the one whose
+/// shaft turns forwards.
+pub fn require_forward(speed: Option<&RingSpeeds>, time: f64) -> Result<(), Failure> {
+    let Some([inner, outer]) = speed.map(|speed| Side::BOTH.map(|side| speed.of(side).at(time))) else {
+        return Ok(());
+    };
+    if inner >= 0.0 || outer == 0.0 {
+        return Ok(());
+    }
+    let [inner, outer] = [inner, outer].map(|speed| speed * 30.0 / PI);
+    Err(Failure::User(anyhow!(
+        "speed.inner is {inner:.0} rpm and speed.outer {outer:.0} rpm, and the speeds of the shaft in modes are \
+         positive; expected speed.inner above 0: give both speeds the other sign"
+    )))
 }
 
 /// What a user should know of a mode that grows, by its number among those shown.

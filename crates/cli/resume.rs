@@ -13,7 +13,7 @@ use anyhow::{Context, anyhow};
 use checkpoint::{StepRecord, has_state, newest_step, read_about, read_any_step, step_file_name};
 use clap::Args;
 use comm::print;
-use results::about::{MAY_CHANGE, OVERRIDES, SCENE_FILE, WARNINGS, require_same_meshes, scene_file};
+use results::about::{MAY_CHANGE, OVERRIDES, SCENE_FILE, WARNINGS, require_named_files, scene_file};
 use results::failure::{Failure, agree};
 use results::integrity::doubts;
 use results::summary::read_summary;
@@ -123,7 +123,7 @@ fn read(request: &ResumeRequest, step: u64) -> Result<Read, Failure> {
     }
     let scene = scene_of(request, &record, &about)?;
     let course = OverTime::of(&scene.analysis, dir)?;
-    require_same_meshes(&scene, &about)?;
+    require_named_files(&scene, &about)?;
     course.require_step(step, &format!("{step}, t = {} s", record.time))?;
     Ok(Read {
         is_finished: step == course.n_steps() && is_finished(dir, step)?,

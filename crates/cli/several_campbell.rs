@@ -15,7 +15,8 @@ use results::whole::require_free;
 use scene::{SeveralScene, assembly_with_rings, build_assembly};
 
 use crate::campbell_files::{
-    self, Diagram, MODES_OF_BEAM, cage_speed, growing, keep_modes_of_shaft, require_one_point, without_stress,
+    self, Diagram, MODES_OF_BEAM, cage_speeds, growing, keep_modes_of_shaft, require_forward,
+    require_one_point, without_stress,
 };
 use crate::damping::{damping_note, laws};
 use crate::progress::Progress;
@@ -32,6 +33,7 @@ pub fn campbell(
 ) -> Result<(), Failure> {
     require_one_point(&scene.analysis, &scene.path)?;
     instant((&scene.analysis, &scene.path), None)?;
+    require_forward(scene.speed.as_ref(), 0.0)?;
     require_free(out, &[CAMPBELL_TABLE, CAMPBELL_LINES])?;
     let slip = scene.effects.slip();
     let first = scene::geometry(&scene.bearings[0].scene);
@@ -87,8 +89,8 @@ fn diagram(
         assembly = assembly_with_rings(&scene, rings(assembly))?;
         let solution = solver.solve(&mut assembly, before.as_ref());
         let solution = solution.map_err(solving).map_err(at)?;
-        let cages: Vec<f64> = scene.bearings.iter().map(|b| cage_speed(&b.scene, 0.0)).collect();
-        let modes = LinearAssembly::new(&assembly, &solver, &solution, laws(&scene.effects))
+        let cages = cage_speeds(&scene, 0.0);
+        let modes = LinearAssembly::passing(&assembly, &solver, &solution, (laws(&scene.effects), &cages))
             .map(|linear| linear.going_round(&assembly, &cages))
             .and_then(|linear| turning.equations((&assembly, &solver), (&solution, &linear), speed));
         let modes = modes.map_err(solving).map_err(at)?.modes();

@@ -7,11 +7,11 @@
 use std::f64::consts::TAU;
 
 use anyhow::anyhow;
-use assembly::stiffness::LinearAssembly;
+use assembly::stiffness::{LinearAssembly, PassedDamping};
 use assembly::{Assembly, AssemblyError, AssemblySolution, AssemblySolver};
+use dynamics::Pose;
 use dynamics::kinematics::Kinematics;
 use dynamics::stiffness::ShaftMatrix;
-use dynamics::{DampingLaws, Pose};
 use results::failure::Failure;
 use results::stiffness::{MOST_POSITIONS, Ripple, require_positions};
 use scene::SeveralScene;
@@ -111,20 +111,21 @@ impl Passing {
         self.bearings.iter().zip(first).map(moved).collect()
     }
 
-    /// The ripple about an equilibrium with these poses, of the shaft at a place, m. The solver goes on as if nothing
+    /// The ripple about an equilibrium with these poses, of the shaft at a place, m, with the damping of contacts that
+    /// balls pass. The solver goes on as if nothing
     /// had been asked of it.
     pub fn ripple(
         &self,
         (assembly, solver): (&mut Assembly, &mut AssemblySolver),
         (solution, first): (&AssemblySolution, &[Pose]),
-        place: f64,
+        (place, damping): (f64, PassedDamping<'_>),
     ) -> Result<RippleOfList, AssemblyError> {
         let (start, columns) = (solution.as_start(), solver.columns().to_vec());
         let mut bearings: Vec<Vec<ShaftMatrix>> = vec![Vec::new(); self.bearings.len()];
         let (mut shaft, mut couplings) = (Vec::new(), Vec::new());
         for position in 0..self.positions().unwrap_or(0) {
             let found = solver.solve_at(assembly, &self.poses(first, position), Some(&start))?;
-            let linear = LinearAssembly::new(assembly, solver, &found, DampingLaws::default())?;
+            let linear = LinearAssembly::passing(assembly, solver, &found, damping)?;
             for (all, own) in bearings.iter_mut().zip(&linear.stiffness) {
                 all.push(*own);
             }

@@ -7,7 +7,7 @@ use assembly::motion::ShaftLedger;
 use assembly::{AssemblyMotion, AssemblyState};
 use checkpoint::{FolderLock, StateArray, StepRecord, has_state, read_about, read_any_step, step_file_name};
 use comm::print;
-use results::about::{MAY_CHANGE, OVERRIDES, SCENE_FILE, require_same_meshes, scene_file};
+use results::about::{MAY_CHANGE, OVERRIDES, SCENE_FILE, require_named_files, scene_file};
 use results::failure::{Failure, agree};
 use results::reduction::take_arrays;
 use results::several::{BEARINGS_TABLE, SCENE_TEXT};
@@ -249,7 +249,7 @@ fn stored_bearing(
         )
         .into());
     }
-    require_same_meshes(&own, &read_about(&folder.join(step_file_name(step)))?)?;
+    require_named_files(&own, &read_about(&folder.join(step_file_name(step)))?)?;
     Ok(StoredBearing {
         folder: folder.to_path_buf(),
         lock: None,

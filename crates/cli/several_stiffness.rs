@@ -19,6 +19,7 @@ use results::survey::say_doubts;
 use results::whole::{make_asked_folder, require_free};
 use scene::{SeveralScene, assembly_with_rings, build_assembly};
 
+use crate::campbell_files::cage_speeds;
 use crate::damping::{damping_note, laws};
 use crate::linear_figures::draw;
 use crate::progress::Progress;
@@ -110,7 +111,9 @@ fn linearise(
             .solve(&mut assembly, &mut solver, before.as_ref())
             .map_err(solving)
             .map_err(at)?;
-        let linear = LinearAssembly::new(&assembly, &solver, &solution, laws(&point.effects))
+        let cages = cage_speeds(point, time);
+        let damping = (laws(&point.effects), cages.as_slice());
+        let linear = LinearAssembly::passing(&assembly, &solver, &solution, damping)
             .map_err(solving)
             .map_err(at)?;
         let of_shaft = at_point.of_shaft(&linear, (&assembly, &solution), results.position);
@@ -120,7 +123,11 @@ fn linearise(
         if let Some(passing) = passing {
             progress.stage("ball-pass ripple");
             let place = results.position;
-            let found = passing.ripple((&mut assembly, &mut solver), (&solution, &poses), place);
+            let found = passing.ripple(
+                (&mut assembly, &mut solver),
+                (&solution, &poses),
+                (place, damping),
+            );
             note_ripple(found.map_err(solving).map_err(at)?, &mut results);
         }
         results

@@ -13,7 +13,7 @@ use comm::print;
 use contact::Side;
 use dynamics::bodies::AXES;
 use dynamics::stiffness::{ShaftMatrix, softest};
-use dynamics::{DampingLaws, Linearisation, Model, Pose, StaticSolution, StaticSolver};
+use dynamics::{Linearisation, Model, Pose, StaticSolution, StaticSolver};
 use results::failure::Failure;
 use results::stiffness::{
     NOT_OVER_SPEED, OperatingPoint, ROSS_TABLE, Ripple, STIFFNESS_FILE, STIFFNESS_TABLE, StiffnessAt,
@@ -23,6 +23,7 @@ use results::survey::say_doubts;
 use results::whole::{make_asked_folder, require_free};
 use scene::{Analysis, AnyScene, Scene, build_model, doubts, model_with_rings, rolling};
 
+use crate::campbell_files::cage_speed;
 use crate::damping::{damping_note, laws};
 use crate::linear_figures::draw;
 use crate::progress::Progress;
@@ -53,7 +54,8 @@ pub struct StiffnessCommand {
 
 /// Linearises and writes.
 pub fn stiffness(command: &StiffnessCommand) -> Result<(), Failure> {
-    let scene = match AnyScene::load(&command.scene, &command.overrides)? {
+    let scene = AnyScene::load(&command.scene, &command.overrides)?;
+    let scene = match of_run(scene) {
         AnyScene::One(scene) => *scene,
         AnyScene::Several(list) => {
             let time = instant((&list.analysis, &list.path), command.time)?;
@@ -74,6 +76,30 @@ pub fn stiffness(command: &StiffnessCommand) -> Result<(), Failure> {
     }
     print::line(format_args!("{} in {}", names.join(", "), command.out.display()));
     Ok(())
+}
+
+/// A scene without what turns with the shaft: an unbalance pulls every way in a turn, so it excites motions about the
+/// mean place of the shaft and is no part of it.
+pub fn steady(scene: AnyScene) -> AnyScene {
+    let (scene, had_unbalance) = scene.without_unbalance();
+    if had_unbalance {
+        print::note(format_args!(
+            "note: [effects.unbalance] turns with the shaft and is left out of the equilibrium"
+        ));
+    }
+    scene
+}
+
+/// The same but for equilibria over time, which have an unbalance where it stands at their instant.
+fn of_run(scene: AnyScene) -> AnyScene {
+    let analysis = match &scene {
+        AnyScene::One(scene) => &scene.analysis,
+        AnyScene::Several(list) => &list.analysis,
+    };
+    match analysis {
+        Analysis::QuasiStatic(_) => scene,
+        _ => steady(scene),
+    }
 }
 
 /// The instant at which a scene of this analysis and file is linearised, s.
@@ -178,6 +204,7 @@ impl PointOfScene<'_> {
         require_load(&solution)?;
         let found =
             Linearisation::new(model, solver, &solution, laws(&scene.effects)).map_err(Failure::solving)?;
+        let found = found.passing(cage_speed(scene, self.time));
         let (stiffness, damping) = found.of_shaft().map_err(Failure::solving)?;
         let mut warnings = solution.warnings.clone();
         warnings.extend(not_positive(&stiffness, model)?);
@@ -204,6 +231,7 @@ impl PointOfScene<'_> {
     ) -> Result<Option<Ripple>, Failure> {
         let Some(n) = self.ripple else { return Ok(None) };
         let pitch = TAU / model.geometry.n_balls as f64;
+        let cage = cage_speed(&self.point.1, self.time);
         let mut matrices: Vec<ShaftMatrix> = Vec::with_capacity(n);
         for i in 0..n {
             let mut pose = first.pose;
@@ -211,12 +239,9 @@ impl PointOfScene<'_> {
             let solution = solver
                 .solve_at(model, &pose, Some(first))
                 .map_err(Failure::solving)?;
-            let found = Linearisation::new(model, solver, &solution, DampingLaws::default());
-            matrices.push(
-                found
-                    .and_then(|found| found.stiffness())
-                    .map_err(Failure::solving)?,
-            );
+            let found = Linearisation::new(model, solver, &solution, laws(&self.point.1.effects));
+            let found = found.map_err(Failure::solving)?.passing(cage);
+            matrices.push(found.stiffness().map_err(Failure::solving)?);
         }
         Ok(Some(Ripple::of(&matrices)))
     }

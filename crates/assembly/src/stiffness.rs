@@ -58,6 +58,9 @@ pub struct BodyCoupling {
     pub damping: Option<ShaftMatrix>,
 }
 
+/// Laws of damping, and the speeds with which balls pass the contacts, rad/s, by bearing.
+pub type PassedDamping<'a> = (DampingLaws, &'a [f64]);
+
 impl LinearAssembly {
     /// Of an equilibrium.
     pub fn new(
@@ -65,6 +68,17 @@ impl LinearAssembly {
         solver: &AssemblySolver,
         solution: &AssemblySolution,
         laws: DampingLaws,
+    ) -> Result<LinearAssembly, AssemblyError> {
+        let stand = vec![0.0; assembly.bearings.len()];
+        LinearAssembly::passing(assembly, solver, solution, (laws, &stand))
+    }
+
+    /// The same whose damped contacts are passed by balls at these speeds, rad/s, each bearing's own.
+    pub fn passing(
+        assembly: &Assembly,
+        solver: &AssemblySolver,
+        solution: &AssemblySolution,
+        (laws, speeds): PassedDamping<'_>,
     ) -> Result<LinearAssembly, AssemblyError> {
         let mut linear = LinearAssembly {
             bearings: Vec::new(),
@@ -76,7 +90,7 @@ impl LinearAssembly {
             let fail = AssemblyError::of_bearing(&bearing.name);
             let factors: &StaticSolver = solver.of_bearing(i);
             let found = Linearisation::new(&bearing.model, factors, &solution.bearings[i], laws);
-            let found = found.map_err(fail)?;
+            let found = found.map_err(fail)?.passing(speeds[i]);
             let (stiffness, damping) = found.of_shaft().map_err(fail)?;
             let turned = |m: &ShaftMatrix| bearing.place.orientation.turned_matrix(m);
             linear.stiffness.push(turned(&stiffness));
@@ -87,8 +101,8 @@ impl LinearAssembly {
         Ok(linear)
     }
 
-    /// The same with balls that go round at these speeds, rad/s, each bearing's own: for modes. Matrices over the shaft
-    /// alone stay.
+    /// The same with the inertia of balls that go round at these speeds, rad/s, each bearing's own: for modes. Matrices
+    /// over the shaft alone stay.
     pub fn going_round(mut self, assembly: &Assembly, speeds: &[f64]) -> LinearAssembly {
         let all = self.bearings.into_iter().zip(&assembly.bearings).zip(speeds);
         let going = all.map(|((own, of), speed)| own.going_round(of.model.ball_mass(), *speed));

@@ -20,7 +20,7 @@ use std::f64::consts::TAU;
 use crate::stiffness::{Linearisation, N_SHAFT, is_held};
 
 impl Linearisation {
-    /// The same with balls of this mass, kg, that go round with `speed`, rad/s.
+    /// The same with the inertia of balls of this mass, kg, that go round with `speed`, rad/s.
     pub fn going_round(mut self, ball_mass: f64, speed: f64) -> Linearisation {
         if speed == 0.0 {
             return self;
@@ -41,8 +41,16 @@ impl Linearisation {
                 }
             }
         }
-        self.add_passing(&slopes, speed);
         self.damping = Some(damping);
+        self
+    }
+
+    /// The same with damped contacts that close because their balls pass with `speed`, rad/s.
+    pub fn passing(mut self, speed: f64) -> Linearisation {
+        if speed != 0.0 && self.closing.iter().any(|contact| contact.damping > 0.0) {
+            let slopes = self.slopes();
+            self.add_passing(&slopes, speed);
+        }
         self
     }
 

@@ -51,7 +51,7 @@ fn modes(model: &Model, damping: Option<ContactDamping>, orbit: f64) -> Vec<Whir
     let mut solver = StaticSolver::new(model).unwrap();
     let solution = solver.solve(model, None).unwrap();
     let bearing = Linearisation::new(model, &solver, &solution, laws(damping)).unwrap();
-    let bearing = bearing.going_round(model.ball_mass(), orbit);
+    let bearing = bearing.passing(orbit).going_round(model.ball_mass(), orbit);
     let inertia = turning_inertia(model).unwrap();
     let shaft = TurningShaft::new(model, &bearing, inertia, SPEED).unwrap();
     let all = shaft.modes().unwrap().into_iter();
@@ -216,4 +216,33 @@ fn of_passing(time: f64) -> (f64, f64) {
         force -= pressed * at.contact(Side::Inner).contact_angle_rad.cos() * at.azimuth_rad.sin();
     }
     (force / stiffness[1][1], loss)
+}
+
+/// Wrong: rotor dynamics would be given damping that stands, of a rotor that is stable at all speeds. A damping c that
+/// goes round with W pulls across by c W, on shifts and tilts alike.
+#[test]
+fn the_stiffness_of_the_shaft_has_damping_that_goes_round() {
+    let model = rotor();
+    let mut solver = StaticSolver::new(&model).unwrap();
+    let solution = solver.solve(&model, None).unwrap();
+    let light = ContactDamping {
+        coefficient: 0.03,
+        ..DAMPING
+    };
+    let linear = |law| Linearisation::new(&model, &solver, &solution, laws(law)).unwrap();
+    let (w, of) = (orbit(&model), linear(Some(light)).passing(orbit(&model)));
+    let (with, damping) = of.of_shaft().unwrap();
+    let (without, damping) = (linear(None).stiffness().unwrap(), damping.unwrap());
+    // d/dpsi of a shift along x is one along y, of a tilt about x one about y.
+    for (i, j, k, sign) in [(0, 1, 0, 1.0), (1, 0, 1, -1.0), (3, 4, 3, 1.0), (4, 3, 4, -1.0)] {
+        let (found, expected) = (with[i][j] - without[i][j], sign * w * damping[i][k]);
+        assert!(
+            (found / expected - 1.0).abs() < 1e-6,
+            "{i} {j}: {found} {expected}"
+        );
+    }
+    assert!((with[2][2] / without[2][2] - 1.0).abs() < 1e-9);
+    // Without damping nothing changes, bit for bit.
+    let still = linear(None).passing(w).stiffness().unwrap();
+    assert!(still == without);
 }

@@ -49,7 +49,7 @@ fn modes_going_round(model: &Model, speed: f64) -> Vec<WhirlMode> {
     let solution = solver.solve(model, None).unwrap();
     let bearing = Linearisation::new(model, &solver, &solution, DampingLaws::default()).unwrap();
     let orbit = Kinematics::new(&model.geometry, [0.0; 2]).of_cage([speed, 0.0]);
-    let bearing = bearing.going_round(model.ball_mass(), orbit);
+    let bearing = bearing.passing(orbit).going_round(model.ball_mass(), orbit);
     let inertia = turning_inertia(model).unwrap();
     let shaft = TurningShaft::new(model, &bearing, inertia, speed).unwrap();
     shaft.modes().unwrap()

@@ -14,6 +14,9 @@ pub const SCENE_FILE: &str = "scene_file";
 pub const OVERRIDES: &str = "overrides";
 /// Commit of the program's source, `unknown` when it was not built from a repository; `+` marks changes beside it.
 pub const COMMIT: &str = "commit";
+/// Other files that the scene names, such as tables of profiles and matrices of bodies: a line for the key and checksum
+/// of each.
+const FILES: &str = "files";
 /// Where the stress of the step file lives, and what it contains.
 pub const STRESS: &str = "stress";
 /// Warnings of the start of the run, one per line.
@@ -45,12 +48,10 @@ pub fn identity(scene: &Scene) -> anyhow::Result<String> {
         let mesh = flexible(scene, side).map(mesh_text).transpose()?;
         lines.push(format!("{} {}", side.name(), mesh.unwrap_or_default()));
     }
-    for (key, path) in named_files(scene)?
+    let of_bodies = files(scene)?
         .into_iter()
-        .filter(|(key, _)| key.starts_with("body."))
-    {
-        lines.push(format!("{key} {}", checksum_text(&path)?));
-    }
+        .filter(|(key, _)| key.starts_with("body."));
+    lines.extend(of_bodies.map(|(key, text)| format!("{key} {text}")));
     let numbers: Vec<u8> = scene.profiles.from_files().flat_map(f64::to_le_bytes).collect();
     if !numbers.is_empty() {
         lines.push(format!("profiles {:016x}", fingerprint(&numbers)));
@@ -81,6 +82,11 @@ pub fn about(scene: &Scene, dir: &Path, warnings: &[String]) -> anyhow::Result<B
         (COMMIT.to_string(), SOURCE_COMMIT.to_string()),
         (STRESS.to_string(), stress_text(scene)),
     ]);
+    let files = files(scene)?.into_iter();
+    let files: Vec<String> = files.map(|(key, text)| format!("{key} {text}")).collect();
+    if !files.is_empty() {
+        texts.insert(FILES.to_string(), files.join("\n"));
+    }
     for side in Side::BOTH {
         if let Some(ring) = flexible(scene, side) {
             texts.insert(mesh_key(side), mesh_text(ring)?);
@@ -121,8 +127,8 @@ fn stress_place(scene: &Scene) -> String {
     }
 }
 
-/// Fails unless the meshes of the scene are, byte for byte, those that `texts` tells of.
-pub fn require_same_meshes(scene: &Scene, texts: &BTreeMap<String, String>) -> anyhow::Result<()> {
+/// Fails unless meshes and other files of the scene are, byte for byte, those that `texts` tells of.
+pub fn require_named_files(scene: &Scene, texts: &BTreeMap<String, String>) -> anyhow::Result<()> {
     for side in Side::BOTH {
         let now = flexible(scene, side).map(mesh_text).transpose()?;
         let then = texts.get(&mesh_key(side));
@@ -137,7 +143,39 @@ pub fn require_same_meshes(scene: &Scene, texts: &BTreeMap<String, String>) -> a
             ));
         }
     }
+    require_same_files(scene, texts.get(FILES))
+}
+
+/// Fails unless the other files are those of a text.
+fn require_same_files(scene: &Scene, then: Option<&String>) -> anyhow::Result<()> {
+    let now = files(scene)?;
+    let lines = then.map_or("", String::as_str).lines();
+    for (key, was) in lines.filter_map(|line| line.split_once(' ')) {
+        let is = now.iter().find(|(name, _)| name == key).map(|(_, text)| text);
+        if is.is_none_or(|is| is != was) {
+            return Err(anyhow!(
+                "the file of {key} has changed since the run: it was {was}, now it is {}; resume with the file of the \
+                 run",
+                is.map_or("not there", String::as_str)
+            ));
+        }
+    }
     Ok(())
+}
+
+/// Keys and checksums of files that touch what a scene computes, but those of rings.
+fn files(scene: &Scene) -> anyhow::Result<Vec<(String, String)>> {
+    let is_mesh = |key: &str| {
+        Side::BOTH
+            .iter()
+            .any(|side| key == format!("{}.mesh", side.name()))
+    };
+    let may_change = |key: &str| MAY_CHANGE.iter().any(|root| key.starts_with(&format!("{root}.")));
+    let named = named_files(scene)?.into_iter();
+    let lasting = named.filter(|(key, _)| !is_mesh(key) && !may_change(key));
+    lasting
+        .map(|(key, path)| Ok((key, checksum_text(&path)?)))
+        .collect()
 }
 
 fn flexible(scene: &Scene, side: Side) -> Option<&FlexibleRing> {

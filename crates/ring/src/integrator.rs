@@ -4,7 +4,8 @@
 //! Balance: M a[1-am] + C v[1-af] + K w[1-af] = f, where x[1-s] = (1-s) x1 + s x0; Newmark: w1 = w0 + dt v0 + dt^2
 //! ((1/2-beta) a0 + beta a1), v1 = v0 + dt ((1-gamma) a0 + gamma a1). Contact forces are means over the step, moved
 //! to the weighted time (`dynamics::interactions::discrete_gradient`). With am = af = 1/2, beta = 1/4, gamma = 1/2
-//! this is the midpoint rule, which conserves the energy of a linear body exactly.
+//! this is the midpoint rule, which conserves the energy of a linear body exactly. Damping of contacts and the inertia
+//! of free tilts are not moved: with them only schemes with e = 0, below, are of second order.
 //!
 //! **What the schemes lose.** Newmark with gamma = 1/2 + d > 1/2 is taken in the equivalent form
 //! ([`Integrator::newmark`])

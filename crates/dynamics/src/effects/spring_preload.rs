@@ -48,6 +48,13 @@ pub struct SpringPreloadTable {
     mass: Option<Quantity<MASS>>,
 }
 
+impl SpringPreloadTable {
+    /// Mass of what slides besides a flexible ring, kg.
+    pub fn mass(&self) -> f64 {
+        self.mass.as_ref().map_or(0.0, Quantity::si)
+    }
+}
+
 impl table::EffectTable for SpringPreloadTable {
     fn about() -> About {
         About {
@@ -88,7 +95,7 @@ impl table::EffectTable for SpringPreloadTable {
     fn load(&self, _setting: Setting<'_>) -> Result<Option<Box<dyn Effect>>, DynamicsError> {
         Ok(Some(Box::new(SpringPreload {
             seat: Seat {
-                mass: self.mass.as_ref().map_or(0.0, Quantity::si),
+                mass: self.mass(),
                 force: self.force.si(),
                 stiffness: self.stiffness.as_ref().map_or(0.0, Quantity::si),
             },

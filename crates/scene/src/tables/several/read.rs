@@ -27,6 +27,23 @@ impl AnyScene {
         AnyScene::load_with(path, overrides, MeshFiles::MustExist)
     }
 
+    /// The same without its unbalance, and whether it had one.
+    pub fn without_unbalance(self) -> (AnyScene, bool) {
+        match self {
+            AnyScene::One(mut scene) => {
+                let had = scene.effects.unbalance.take().is_some();
+                (AnyScene::One(scene), had)
+            }
+            AnyScene::Several(mut list) => {
+                for bearing in &mut list.bearings {
+                    bearing.scene.effects.unbalance = None;
+                }
+                let had = list.effects.unbalance.take().is_some();
+                (AnyScene::Several(list), had)
+            }
+        }
+    }
+
     /// Reads and checks a scene file; `mesh_files` says whether the meshes have to be there already.
     pub fn load_with(
         path: &Path,
