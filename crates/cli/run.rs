@@ -11,6 +11,7 @@ use dynamics::{Model, Pose, StaticSolution, StaticSolver};
 use results::disk::Forecast;
 use results::failure::{Failure, agree, of_all};
 use results::files::Files;
+use results::list_folder::{is_free_again, require_room};
 use results::memory::Forecasts;
 use results::motion_fields::RestartState;
 use results::shown::Shown;
@@ -312,7 +313,8 @@ fn run_list(
     if let Some(part) = part {
         part.check(&list.path, &list.analysis)?;
     }
-    let dir = folder::choose(&list.path, out)?;
+    let dir = folder::choose_for_list(&list.path, out, |dir| is_free_again(&list.path, dir))?;
+    agree(require_room(&list.path, &dir))?;
     note_unshared(&list.bearings[0].scene);
     match &list.analysis {
         Analysis::Dynamic(dynamic) => several_motion::run(list, dynamic, &dir, limits, start)?,

@@ -10,6 +10,7 @@ use results::bodies::{BodiesElsewhere, bodies_elsewhere, where_bodies_are};
 use results::cut::TableCut;
 use results::failure::{Failure, agree};
 use results::files::{Files, ResumedFrom};
+use results::list_folder::ListStart;
 use results::memory::Forecasts;
 use results::seat::{SeatFolder, SeatSummaries};
 use results::several::SeveralTables;
@@ -23,9 +24,10 @@ use timer::Laps;
 use crate::several::of_seats;
 use crate::several_state::StoredBearing;
 
-/// Makes the files of all bearings, which begin as their snapshots show.
+/// Makes the files of all bearings, which begin as their snapshots show, in the folder of a run that begins.
 pub fn create_files(
-    (assembly, dir): (&Assembly, &Path),
+    begun: ListStart,
+    assembly: &Assembly,
     placed: &[Scene],
     first: Vec<Snapshot>,
     surveys: Vec<Survey>,
@@ -33,10 +35,11 @@ pub fn create_files(
     let mut files = Vec::new();
     for (i, (placed, survey)) in placed.iter().zip(surveys).enumerate() {
         let mounted = &assembly.bearings[i];
-        let own = dir.join(&mounted.name);
+        let own = begun.dir.join(&mounted.name);
         let made = Files::create_part(placed, &mounted.model, &own, &first[i], survey, &[]);
         files.push(agree(made)?);
     }
+    agree(begun.end())?;
     Ok(files)
 }
 

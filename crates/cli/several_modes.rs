@@ -95,9 +95,10 @@ fn write(
     dir: &Path,
     start: Instant,
 ) -> Result<(), Failure> {
-    make_folder(scene, dir)?;
+    let begun = make_folder(scene, dir)?;
     let shown = ListState::of_equilibrium(assembly, solution);
     let mut tables = SeveralTables::create(dir, None, &shown)?;
+    begun.end()?;
     tables.append((0, 0.0), None, assembly, &shown)?;
     write_tables_of_several(dir, assembly, found, &free_dofs(assembly))?;
     for (i, bearing) in scene.bearings.iter().enumerate() {

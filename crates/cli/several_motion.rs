@@ -70,10 +70,10 @@ pub fn run(
     let placed = placed.map(|(bearing, found)| several::placed(&bearing.scene, found));
     let placed = agree(placed.collect::<Result<Vec<Scene>, Failure>>())?;
     drop(solution);
-    agree(make_folder(scene, dir))?;
+    let begun = agree(make_folder(scene, dir))?;
     let first = ListState::of_motion(&assembly, &motion, &state);
     let tables = agree(SeveralTables::create(dir, None, &first).map_err(Failure::from))?;
-    let files = create_files((&assembly, dir), &placed, snapshots(&motion, &state), surveys)?;
+    let files = create_files(begun, &assembly, &placed, snapshots(&motion, &state), surveys)?;
     let mut march = ListMarch {
         watches: new_watches(&assembly),
         scene,

@@ -67,11 +67,11 @@ pub fn run(
     let placed = placed.map(|(bearing, found)| several::placed(&bearing.scene, found));
     let placed = agree(placed.collect::<Result<Vec<Scene>, Failure>>())?;
     // The first solution makes the folder: a scene that has none leaves no files.
-    agree(make_folder(scene, dir))?;
+    let begun = agree(make_folder(scene, dir))?;
     let tables = SeveralTables::create(dir, None, &ListState::of_equilibrium(&list.assembly, &first));
     let tables = agree(tables.map_err(Failure::from))?;
     let snapshots = (0..placed.len()).map(|i| list.snapshot(&first, i)).collect();
-    let files = create_files((&list.assembly, dir), &placed, snapshots, surveys)?;
+    let files = create_files(begun, &list.assembly, &placed, snapshots, surveys)?;
     let counts = ListCounts {
         of_bearings: vec![[0; 2]; first.bearings.len()],
         ..ListCounts::default()

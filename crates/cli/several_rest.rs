@@ -304,7 +304,7 @@ impl SeveralFiles {
         solution: &AssemblySolution,
         dir: &Path,
     ) -> Result<SeveralFiles, Failure> {
-        agree(make_folder(scene, dir))?;
+        let begun = agree(make_folder(scene, dir))?;
         let column = column(scene);
         let first = ListState::of_equilibrium(assembly, solution);
         let tables = SeveralTables::create(dir, column, &first);
@@ -323,6 +323,7 @@ impl SeveralFiles {
             let files = Files::create_part(&placed, &mounted.model, &own, &snapshot, survey, &[]);
             bearings.push((own, agree(files)?));
         }
+        agree(begun.end())?;
         if let Some(column) = column {
             print_sweep_head(column, assembly);
         }

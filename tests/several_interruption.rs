@@ -1,0 +1,113 @@
+//! Lists of bearings that are killed, stopped, or whose disk is full.
+
+use checkpoint::{committed_steps, read_stamps, step_file_name};
+
+use crate::several::{pair, succeeds};
+use crate::util::Dir;
+use crate::util::lockstep::{assert_same_run, copy};
+
+const BEARINGS: [&str; 2] = ["front", "rear"];
+
+const EQUILIBRIA: &str =
+    "[speed]\ninner = \"3000 rpm\"\n[quasi_static]\nduration = \"1 ms\"\nstep = \"0.25 ms\"\n";
+const MOTION: &str = "[speed]\ninner = \"3000 rpm\"\n[dynamic]\nduration = \"1 ms\"\nstep = \"10 us\"\n\
+                      output_every = 100\n";
+
+/// Fails unless two folders have the same tables, and the folder `cut` all steps of `whole`, which tell the same of the
+/// tables.
+#[track_caller]
+fn assert_same_list(dir: &Dir, whole: &str, cut: &str) {
+    for name in ["balls.csv", "bearings.csv", "shaft.csv"] {
+        let [whole, cut] = [whole, cut].map(|out| dir.text(&format!("{out}/{name}")));
+        let differ = whole.lines().zip(cut.lines()).find(|(a, b)| a != b);
+        assert!(whole == cut, "{name} differs first at {differ:?}");
+    }
+    for bearing in BEARINGS {
+        let [whole, cut] = [whole, cut].map(|out| format!("{out}/{bearing}"));
+        assert_same_run(dir, &whole, &cut);
+        assert_same_stamps(dir, &whole, &cut);
+    }
+}
+
+/// Fails unless the steps of the folder `whole` tell the same of the tables as those of the folder `cut`.
+#[track_caller]
+fn assert_same_stamps(dir: &Dir, whole: &str, cut: &str) {
+    for step in committed_steps(&dir.path(whole)).unwrap() {
+        let stamps = |out: &str| read_stamps(&dir.path(out).join(step_file_name(step))).unwrap();
+        assert_eq!(stamps(whole), stamps(cut), "step {step}");
+    }
+}
+
+/// Wrong: a list that ended before its first step could neither go on nor be run again, or running it again would take
+/// files of the user or results with it. A limit on the size of files stands for the end: no mesh file fits, or no
+/// step.
+#[test]
+fn a_list_that_ended_before_its_first_step_is_run_again() {
+    for analysis in [EQUILIBRIA, MOTION] {
+        let dir = pair(analysis);
+        let run = |out: &'static str| ["run", "pair.toml", "--out", out];
+        succeeds(&dir, &run("whole"));
+        for (limit, out) in [(1, "early"), (16, "late"), (16, "alone")] {
+            let outcome = dir.raceway_with_small_files(limit, &run(out));
+            assert_eq!(outcome.code, Some(2), "{}", outcome.stderr);
+            assert!(outcome.stderr.contains("File too large"), "{}", outcome.stderr);
+            if out == "alone" {
+                // One bearing was faster than the other.
+                let step = "front/step_000000.hdf";
+                std::fs::copy(
+                    dir.path(&format!("whole/{step}")),
+                    dir.path(&format!("alone/{step}")),
+                )
+                .unwrap();
+                std::fs::remove_file(dir.path("alone/front/.raceway.starting")).unwrap();
+            }
+            let refused = dir.raceway(&["resume", out]);
+            assert_eq!(refused.code, Some(2));
+            let expected = format!(
+                "{out} holds no step that is whole in all bearings: the run ended before its first one; start it again \
+                 with raceway run SCENE --out {out}"
+            );
+            assert!(refused.stderr.contains(&expected), "{}", refused.stderr);
+            let said = succeeds(&dir, &run(out)).stderr;
+            let expected = format!("the run in {out} ended before its first step was whole in all bearings");
+            assert!(said.contains(&expected), "{said}");
+            assert_same_list(&dir, "whole", out);
+        }
+        let kept = dir.path("alone/front/superseded_1");
+        assert_eq!(committed_steps(&kept).unwrap(), [0]);
+    }
+}
+
+/// Wrong: a run would begin where results or files of the user are, and replace them.
+#[test]
+fn a_list_begins_only_where_nothing_is_lost() {
+    let dir = pair(EQUILIBRIA);
+    succeeds(&dir, &["run", "pair.toml", "--out", "killed"]);
+    std::fs::remove_file(dir.path("killed/summary.json")).unwrap();
+    copy(&dir, "killed", "half");
+    for step in 0..=4 {
+        std::fs::remove_file(dir.path(&format!("half/rear/{}", step_file_name(step)))).unwrap();
+    }
+    for (out, name) in [
+        ("tables", "shaft.csv"),
+        ("scenes", "scene.toml"),
+        ("bearings", "bearings.csv"),
+    ] {
+        std::fs::create_dir(dir.path(out)).unwrap();
+        dir.write(&format!("{out}/{name}"), "mine");
+    }
+    let before = dir.snapshot();
+    for (out, file) in [
+        ("killed", "results of a run (balls.csv)"),
+        ("half", "results of a run (balls.csv)"),
+        ("tables", "results of a run (shaft.csv)"),
+        ("scenes", "scene.toml"),
+        ("bearings", "bearings.csv"),
+    ] {
+        let refused = dir.raceway(&["run", "pair.toml", "--out", out]);
+        assert_eq!(refused.code, Some(2));
+        let expected = format!("{out} already holds {file}; choose another --out");
+        assert!(refused.stderr.contains(&expected), "{}", refused.stderr);
+    }
+    assert!(dir.snapshot() == before);
+}
