@@ -2,6 +2,7 @@
 
 use checkpoint::{committed_steps, read_stamps, step_file_name};
 
+use crate::interruption::{outcome_of, signal, wait_for_steps};
 use crate::several::{pair, succeeds};
 use crate::util::Dir;
 use crate::util::lockstep::{assert_same_run, copy};
@@ -31,7 +32,7 @@ fn assert_same_list(dir: &Dir, whole: &str, cut: &str) {
 
 /// Fails unless the steps of the folder `whole` tell the same of the tables as those of the folder `cut`.
 #[track_caller]
-fn assert_same_stamps(dir: &Dir, whole: &str, cut: &str) {
+pub fn assert_same_stamps(dir: &Dir, whole: &str, cut: &str) {
     for step in committed_steps(&dir.path(whole)).unwrap() {
         let stamps = |out: &str| read_stamps(&dir.path(out).join(step_file_name(step))).unwrap();
         assert_eq!(stamps(whole), stamps(cut), "step {step}");
@@ -110,4 +111,54 @@ fn a_list_begins_only_where_nothing_is_lost() {
         assert!(refused.stderr.contains(&expected), "{}", refused.stderr);
     }
     assert!(dir.snapshot() == before);
+}
+
+/// Wrong: a stop of a list would leave rows between those that `output.tables_every` asks for, in its tables and in
+/// those of its bearings, and a run that is stopped twice could not go on.
+#[test]
+fn rows_that_only_stops_add_to_a_list_are_gone_after_them() {
+    for (analysis, key) in [(EQUILIBRIA, "quasi_static"), (MOTION, "dynamic")] {
+        let dir = pair(analysis);
+        let set = |more: &str| format!("{key}.{more}");
+        let endless = [set("duration=20 s"), set("output_every=1000000")];
+        let mut arguments = vec![
+            "run",
+            "pair.toml",
+            "--out",
+            "cut",
+            "--set",
+            "output.tables_every=7",
+        ];
+        endless.iter().for_each(|set| arguments.extend(["--set", set]));
+        let stopped = |arguments: &[&str]| {
+            let mut child = dir.start(arguments);
+            let lines = wait_for_steps(&mut child);
+            signal(&child, "TERM");
+            let outcome = outcome_of(child, lines);
+            assert_eq!(outcome.code, Some(75), "{}", outcome.stderr);
+            *committed_steps(&dir.path("cut/rear")).unwrap().last().unwrap()
+        };
+        let first = stopped(&arguments);
+        let rows = dir.text("cut/shaft.csv");
+        assert!(rows.lines().last().unwrap().starts_with(&format!("{first},")));
+        let second = stopped(&["resume", "cut"]);
+        assert!(second >= first);
+        let step = if key == "dynamic" { 10 } else { 250 };
+        let (last, duration) = (second + 9, set(&format!("duration={} us", step * (second + 9))));
+        succeeds(&dir, &["resume", "cut", "--set", &duration]);
+        let every = set(&format!("output_every={last}"));
+        let whole = [
+            "run",
+            "pair.toml",
+            "--out",
+            "whole",
+            "--set",
+            "output.tables_every=7",
+        ];
+        succeeds(
+            &dir,
+            &[&whole[..], &["--set", &duration, "--set", &every]].concat(),
+        );
+        assert_same_list(&dir, "whole", "cut");
+    }
 }

@@ -290,13 +290,18 @@ impl OverInstants for LoadCases<'_, '_, '_> {
         files.write_probes(step, step as f64, *value, &shown)
     }
 
+    fn append_profiles(&mut self) -> Result<(), Failure> {
+        let step = self.now();
+        let (files, shown, _, (value, _)) = self.last();
+        files.write_profiles(step, step as f64, *value, &shown)
+    }
+
     fn append_files(&mut self, _restart: RestartState) -> Result<(), Failure> {
         let (step, last) = (self.now(), self.due().last);
         let kept = self.scene.output.every.kept(step, 1, last);
-        let (files, shown, solved, (value, point)) = self.last();
+        let (files, shown, solved, (_, point)) = self.last();
         let (time, solution) = (step as f64, &solved.solution);
         let gathered = files.gather_stress(&shown, kept);
-        files.write_profiles(step, time, *value, &shown)?;
         files.write_fields(|stress| {
             fields::record(&shown, solution, (stress, gathered), (step, time), (point, kept))
         })

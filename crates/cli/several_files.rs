@@ -7,13 +7,13 @@ use assembly::{Assembly, MountedBearing};
 use comm::{Communicator, print};
 use dynamics::Model;
 use results::bodies::{BodiesElsewhere, bodies_elsewhere, where_bodies_are};
-use results::cut::TableCut;
+use results::cut::{TableCut, last_row};
 use results::failure::{Failure, agree};
 use results::files::{Files, ResumedFrom};
 use results::list_folder::ListStart;
 use results::memory::Forecasts;
 use results::seat::{SeatFolder, SeatSummaries};
-use results::several::SeveralTables;
+use results::several::{ListState, SHAFT_TABLE, SeveralTables};
 use results::snapshot::Snapshot;
 use results::state_arrays::Arrays;
 use results::summary::{Findings, Summary};
@@ -76,6 +76,30 @@ fn resume_files(
     };
     let files = Files::resume(&bearing.scene, model, bearing.lock, &own, survey, &from);
     Ok((agree(files)?, bearing.scene))
+}
+
+/// Where the tables beside the folders of the bearings are to be cut to go on from the step that was read: behind the
+/// last row that its file tells of in the first bearing. A run that stopped has a row more where none was due.
+pub fn cuts_of_list(
+    dir: &Path,
+    first: &ListState,
+    bearing: &StoredBearing,
+) -> Result<Vec<TableCut>, Failure> {
+    agree(find_cuts(dir, first, bearing).map_err(Failure::from))
+}
+
+fn find_cuts(dir: &Path, first: &ListState, bearing: &StoredBearing) -> anyhow::Result<Vec<TableCut>> {
+    let step = bearing.record.step;
+    let stamp = bearing
+        .record
+        .tables
+        .as_ref()
+        .and_then(|tables| tables.get(SHAFT_TABLE));
+    let last = match stamp.filter(|_| Communicator::world().is_root()) {
+        Some(stamp) => last_row(&bearing.folder.join(SHAFT_TABLE), (step, *stamp))?,
+        None => None,
+    };
+    SeveralTables::cuts(dir, first, last.unwrap_or(step))
 }
 
 /// Closes the files of a bearing by its number, whose scene is `placed`, and writes its summary into its folder `own`;
