@@ -3,6 +3,7 @@
 use serde_json::{Value, json};
 
 use crate::resume::moved;
+use crate::several::pair;
 use crate::util::{Dir, Outcome, RIGID, SCENE};
 
 /// The one line of standard output.
@@ -53,6 +54,19 @@ fn an_answer_is_one_line_of_json() {
     let error = found["error"].as_str().unwrap();
     assert!(error.starts_with("out already holds results of a run"), "{error}");
     assert!(outcome.stderr.contains(error) && found.get("results").is_none());
+}
+
+/// Wrong: a script would be sent to one bearing of a list whose modes it asked for, and find its log there.
+#[test]
+fn modes_of_a_list_answer_with_the_folder_of_the_list() {
+    let dir = pair("[modes]\nnumber = 2");
+    let outcome = dir.raceway(&["run", "pair.toml", "--out", "out", "--json"]);
+    assert_eq!(outcome.code, Some(0), "{}", outcome.stderr);
+    let found = answer(&outcome);
+    let summary: Value = serde_json::from_str(&dir.text("out/summary.json")).unwrap();
+    assert_eq!([&found["results"], &found["summary"]], [&json!("out"), &summary]);
+    assert!(dir.text("out/run.log").contains("# exit code 0"));
+    assert!(!dir.path("out/rear/run.log").exists());
 }
 
 /// Wrong: one of the commands would write other lines to standard output than its answer.

@@ -105,7 +105,7 @@ fn write(
         let (model, equilibrium) = (&assembly.bearings[i].model, &solution.bearings[i]);
         let (own, placed) = (dir.join(&bearing.name), placed(&bearing.scene, equilibrium)?);
         let set: ModeSet = set_of_several(found, |mode| &mode.bearings[i]);
-        let mut files = ModeFiles::create(&placed, model, &own)?;
+        let mut files = ModeFiles::create_part(&placed, model, &own)?;
         files.write(&placed, model, ModeBody::Bearing, &set)?;
         let run = files.finish()?;
         let snapshot = Snapshot::of_equilibrium(equilibrium, None);
