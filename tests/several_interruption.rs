@@ -1,11 +1,14 @@
 //! Lists of bearings that are killed, stopped, or whose disk is full.
 
+use std::io::{BufRead, BufReader};
+
 use checkpoint::{committed_steps, read_stamps, step_file_name};
 
 use crate::interruption::{outcome_of, signal, wait_for_steps};
 use crate::several::{pair, succeeds};
 use crate::util::Dir;
 use crate::util::lockstep::{assert_same_run, copy};
+use crate::util::tables::summary;
 
 const BEARINGS: [&str; 2] = ["front", "rear"];
 
@@ -160,5 +163,31 @@ fn rows_that_only_stops_add_to_a_list_are_gone_after_them() {
             &[&whole[..], &["--set", &duration, "--set", &every]].concat(),
         );
         assert_same_list(&dir, "whole", "cut");
+    }
+}
+
+/// Wrong: the part of a sweep would pass for all of it in the folders of its bearings.
+#[test]
+fn bearings_of_a_stopped_sweep_are_stopped_too() {
+    let values: Vec<String> = (0..600).map(|i| format!("\"{} nm\"", 14_000 + i)).collect();
+    let sweep = format!(
+        "[sweep]\nkey = \"pairing.offset\"\nvalues = [{}]",
+        values.join(", ")
+    );
+    let dir = pair(&sweep);
+    let mut child = dir.start(&["run", "pair.toml", "--out", "out"]);
+    let mut lines = BufReader::new(child.stderr.take().unwrap());
+    let mut line = String::new();
+    while !line.contains("] 2/600 bearings at ") {
+        line.clear();
+        assert!(lines.read_line(&mut line).unwrap() > 0);
+    }
+    signal(&child, "TERM");
+    let outcome = outcome_of(child, lines);
+    assert_eq!(outcome.code, Some(75), "{}", outcome.stderr);
+    for folder in ["out", "out/front", "out/rear"] {
+        let status = summary(&dir, folder)["status"].clone();
+        let is_stopped = status.as_str().unwrap().starts_with("stopped: SIGTERM received");
+        assert!(is_stopped, "{folder}: {status}");
     }
 }

@@ -179,16 +179,18 @@ impl SolvedLists {
         let mut laps = solver.laps();
         laps.add(READ, read);
         laps.add(TOTAL, start.elapsed().as_secs_f64());
-        let seats = files.finish(scene, (&self.assembly, &last), &solver, start);
+        let status = ended.as_ref().err();
+        let status = status.map_or("finished".to_string(), Failure::status);
+        let found = (&self.assembly, &last, &*status);
+        let seats = files.finish(scene, found, &solver, start);
         // A run that failed says why, not what its failure did to the files.
         let seats = match (seats, &ended) {
             (Err(_), Err(_)) => return ended,
             (seats, _) => seats?,
         };
         self.warnings.extend(seats);
-        let status = ended.as_ref().err();
         let findings = SeveralFindings {
-            status: status.map_or("finished".to_string(), Failure::status),
+            status,
             iterations: self.iterations,
             residual: last.shaft.error,
             warnings: self.warnings,
@@ -362,11 +364,11 @@ impl SeveralFiles {
         Ok(())
     }
 
-    /// Closes the files of the bearings; warns of their seats. Collective.
+    /// Closes the files of the bearings, which have the status of the run; warns of their seats. Collective.
     fn finish(
         self,
         scene: &SeveralScene,
-        (assembly, solution): (&Assembly, &AssemblySolution),
+        (assembly, solution, status): (&Assembly, &AssemblySolution, &str),
         solver: &AssemblySolver,
         start: Instant,
     ) -> Result<Vec<String>, Failure> {
@@ -378,7 +380,7 @@ impl SeveralFiles {
             let forecast = Forecasts::at_rest(forecast, &mounted.model);
             let found = &solution.bearings[i];
             let findings = Findings {
-                status: "finished".to_string(),
+                status: status.to_string(),
                 last: snapshot(found),
                 points: Vec::new(),
                 iterations: std::collections::BTreeMap::from([
