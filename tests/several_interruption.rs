@@ -191,3 +191,39 @@ fn bearings_of_a_stopped_sweep_are_stopped_too() {
         assert!(is_stopped, "{folder}: {status}");
     }
 }
+
+/// Wrong: a list at rest would start without room for its results, which `check` would not tell or tell wrongly.
+#[test]
+fn the_output_of_a_list_at_rest_is_forecast() {
+    for (analysis, n) in [
+        ("[static]", 1),
+        (
+            "[sweep]\nkey = \"pairing.offset\"\nvalues = [\"18 um\", \"20 um\", \"22 um\"]",
+            3,
+        ),
+    ] {
+        let dir = pair(analysis);
+        let checked = succeeds(&dir, &["check", "pair.toml", "--json", "--quiet"]).stdout;
+        let found: serde_json::Value = serde_json::from_str(&checked).unwrap();
+        assert_eq!(found["step_files"], 2 * n);
+        assert!(found["assumed"].is_array());
+        succeeds(&dir, &["run", "pair.toml", "--out", "out"]);
+        let mut bytes = 0;
+        for bearing in BEARINGS {
+            let steps = committed_steps(&dir.path(&format!("out/{bearing}"))).unwrap();
+            assert_eq!(steps.len(), n);
+            let names = steps
+                .into_iter()
+                .map(step_file_name)
+                .chain(["balls.csv".to_string()]);
+            let sizes = names.map(|name| {
+                std::fs::metadata(dir.path(&format!("out/{bearing}/{name}")))
+                    .unwrap()
+                    .len()
+            });
+            bytes += sizes.sum::<u64>();
+        }
+        let forecast = found["output_bytes"].as_u64().unwrap() as f64 / bytes as f64;
+        assert!((0.9..1.5).contains(&forecast), "{forecast}");
+    }
+}

@@ -31,6 +31,7 @@ use crate::several::{
 };
 use crate::several_files::close_bearing;
 use crate::several_read::{ReadList, read_list, require_memory_of_all};
+use crate::several_ready::forecast;
 
 /// Runs a scene at rest, or a part of its sweep; its results go into a folder.
 pub fn run(
@@ -51,7 +52,9 @@ pub fn run(
         doubts,
         surveys,
     } = agree(read_list(&points[0].1, scene, |assembly| {
-        require_memory_of_all(scene, assembly)
+        require_memory_of_all(scene, assembly)?;
+        let all = forecast(scene, assembly, 0).times(points.len() as u64);
+        all.require_space(dir, limits.ignore_disk_space)
     }))?;
     let read = start.elapsed().as_secs_f64();
     progress.stage("factoring the stiffness of the rings");
