@@ -69,6 +69,21 @@ fn modes_of_a_list_answer_with_the_folder_of_the_list() {
     assert!(!dir.path("out/rear/run.log").exists());
 }
 
+/// Wrong: a script that resumes until nothing is left would at last be told of no results.
+#[test]
+fn a_resume_with_nothing_to_do_answers_with_the_results() {
+    let moving = "[speed]\ninner = \"3000 rpm\"\n[quasi_static]\nduration = \"1 ms\"\nstep = \"0.5 ms\"\n";
+    let dir = pair(moving);
+    dir.write("scene.toml", SCENE.replace("[static]", moving));
+    for (scene, out, more) in [("scene.toml", "one", &RIGID[..]), ("pair.toml", "list", &[])] {
+        let run = dir.raceway(&[&["run", scene, "--out", out], more].concat());
+        assert_eq!(run.code, Some(0), "{}", run.stderr);
+        let found = answer(&dir.raceway(&["resume", out, "--json"]));
+        let summary: Value = serde_json::from_str(&dir.text(&format!("{out}/summary.json"))).unwrap();
+        assert_eq!([&found["results"], &found["summary"]], [&json!(out), &summary]);
+    }
+}
+
 /// Wrong: one of the commands would write other lines to standard output than its answer.
 #[test]
 fn all_commands_answer() {
