@@ -3,6 +3,7 @@
 use serde_json::{Value, json};
 
 use crate::resume::moved;
+use crate::several::pair;
 use crate::util::{Dir, Outcome, RIGID, SCENE};
 
 /// The one line of standard output.
@@ -53,6 +54,34 @@ fn an_answer_is_one_line_of_json() {
     let error = found["error"].as_str().unwrap();
     assert!(error.starts_with("out already holds results of a run"), "{error}");
     assert!(outcome.stderr.contains(error) && found.get("results").is_none());
+}
+
+/// Wrong: a script would be sent to one bearing of a list whose modes it asked for, and find its log there.
+#[test]
+fn modes_of_a_list_answer_with_the_folder_of_the_list() {
+    let dir = pair("[modes]\nnumber = 2");
+    let outcome = dir.raceway(&["run", "pair.toml", "--out", "out", "--json"]);
+    assert_eq!(outcome.code, Some(0), "{}", outcome.stderr);
+    let found = answer(&outcome);
+    let summary: Value = serde_json::from_str(&dir.text("out/summary.json")).unwrap();
+    assert_eq!([&found["results"], &found["summary"]], [&json!("out"), &summary]);
+    assert!(dir.text("out/run.log").contains("# exit code 0"));
+    assert!(!dir.path("out/rear/run.log").exists());
+}
+
+/// Wrong: a script that resumes until nothing is left would at last be told of no results.
+#[test]
+fn a_resume_with_nothing_to_do_answers_with_the_results() {
+    let moving = "[speed]\ninner = \"3000 rpm\"\n[quasi_static]\nduration = \"1 ms\"\nstep = \"0.5 ms\"\n";
+    let dir = pair(moving);
+    dir.write("scene.toml", SCENE.replace("[static]", moving));
+    for (scene, out, more) in [("scene.toml", "one", &RIGID[..]), ("pair.toml", "list", &[])] {
+        let run = dir.raceway(&[&["run", scene, "--out", out], more].concat());
+        assert_eq!(run.code, Some(0), "{}", run.stderr);
+        let found = answer(&dir.raceway(&["resume", out, "--json"]));
+        let summary: Value = serde_json::from_str(&dir.text(&format!("{out}/summary.json"))).unwrap();
+        assert_eq!([&found["results"], &found["summary"]], [&json!(out), &summary]);
+    }
 }
 
 /// Wrong: one of the commands would write other lines to standard output than its answer.

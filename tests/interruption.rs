@@ -8,6 +8,7 @@ use std::time::Duration;
 use checkpoint::{committed_steps, read_step, step_file_name};
 
 use crate::readers::python;
+use crate::several_interruption::assert_same_stamps;
 use crate::util::Outcome;
 use crate::util::lockstep::{assert_same_run, copy, small_motion};
 use crate::util::tables::summary;
@@ -191,6 +192,49 @@ fn a_signal_stops_between_steps() {
         ];
         dir.run(&whole, &sparse);
         assert_same_run(&dir, &whole, out);
+    }
+}
+
+/// Wrong: each stop would leave rows between those that `output.tables_every` and `output_every` ask for, so that
+/// spectra refuse the run, and later steps tell of other tables.
+#[test]
+fn rows_that_only_stops_add_are_gone_after_them() {
+    let dir = small_motion();
+    let profile = "[probes.profile.down]\nring = \"inner\"\nazimuth = \"0 deg\"\ngroove_angle = \"25 deg\"\n\
+                   depth = [\"0 mm\", \"0.2 mm\"]\npoints = 3\n";
+    let motion = dir.text("scene.toml") + profile;
+    let equilibria = "[quasi_static]\nduration = \"1 ms\"\nstep = \"20 us\"\n[speed]";
+    let (head, tail) = motion.split_once("[dynamic]").unwrap();
+    let (_, tail) = tail.split_once("[speed]").unwrap();
+    dir.write("dynamic.toml", &motion);
+    dir.write("quasi_static.toml", format!("{head}{equilibria}{tail}"));
+    for key in ["dynamic", "quasi_static"] {
+        let (scene, cut) = (format!("{key}.toml"), format!("{key}_cut"));
+        let endless = [
+            format!("{key}.duration=2 s"),
+            format!("{key}.output_every=100000"),
+        ];
+        let every = "output.tables_every=7";
+        let mut arguments = vec!["run", &scene, "--out", &cut, "--set", every];
+        endless.iter().for_each(|set| arguments.extend(["--set", set]));
+        for arguments in [&arguments[..], &["resume", &cut]] {
+            let mut child = dir.start(arguments);
+            let lines = wait_for_steps(&mut child);
+            signal(&child, "TERM");
+            let outcome = outcome_of(child, lines);
+            assert_eq!(outcome.code, Some(75), "{}", outcome.stderr);
+        }
+        let last = committed_steps(&dir.path(&cut)).unwrap().last().unwrap() + 9;
+        let duration = format!("{key}.duration={} us", 20 * last);
+        let resumed = dir.raceway(&["resume", &cut, "--set", &duration]);
+        assert_eq!(resumed.code, Some(0), "{}", resumed.stderr);
+        let (whole, at_end) = (format!("{key}_whole"), format!("{key}.output_every={last}"));
+        let run = [
+            "run", &scene, "--out", &whole, "--set", every, "--set", &duration, "--set", &at_end,
+        ];
+        assert_eq!(dir.raceway(&run).code, Some(0));
+        assert_same_run(&dir, &whole, &cut);
+        assert_same_stamps(&dir, &whole, &cut);
     }
 }
 

@@ -249,7 +249,7 @@ fn a_scene_in_the_folder_is_not_written_over() {
     assert!(
         refused
             .stderr
-            .contains("cannot write out/scene.toml: File exists"),
+            .contains("out already holds scene.toml; choose another --out or remove it"),
         "{}",
         refused.stderr
     );

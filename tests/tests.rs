@@ -60,6 +60,7 @@ mod several_alone;
 mod several_critical_speed;
 mod several_damping;
 mod several_export;
+mod several_interruption;
 mod several_modes;
 mod several_preload;
 mod several_quasi_static;

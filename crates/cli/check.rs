@@ -9,7 +9,7 @@ use dynamics::kinematics::Kinematics;
 use dynamics::motion::check_supported;
 use dynamics::{Model, MotionMemory, RingMemory};
 use results::answer;
-use results::disk::{self, Forecast};
+use results::disk::Forecast;
 use results::failure::Failure;
 use results::memory::{bound, forecast};
 use results::probes::PlacedProbes;
@@ -66,7 +66,7 @@ pub fn check(path: &Path, overrides: &[String]) -> Result<(), Failure> {
     print_memory(&scene, &model, rings.memory, rings.motion);
     rank_table::print(&rings.on_ranks, &scene.analysis);
     let forecast = Forecast::new(&scene, &model, 0);
-    print_output(&forecast);
+    forecast.say();
     for line in &scene.assumed {
         print::line(format_args!("assumed  {line}"));
     }
@@ -78,8 +78,6 @@ pub fn check(path: &Path, overrides: &[String]) -> Result<(), Failure> {
     answer::add("assumed", &scene.assumed);
     answer::add("clearance_m", geometry.clearance());
     answer::add("free_contact_angle_rad", geometry.free_contact_angle());
-    answer::add("output_bytes", forecast.total);
-    answer::add("step_files", forecast.n_files);
     Ok(())
 }
 
@@ -108,23 +106,6 @@ fn print_analysis(scene: &Scene) {
             sweep.points.len()
         )),
     }
-}
-
-/// Prints how much a run would write.
-fn print_output(forecast: &Forecast) {
-    let free = disk::free_bytes(Path::new(".")).map_or(String::new(), |free| {
-        format!("; the disk of this folder has {} free", disk::size(free))
-    });
-    let states = match forecast.n_states < forecast.n_files {
-        true => format!(" ({} with a restart state)", forecast.n_states),
-        false => String::new(),
-    };
-    print::line(format_args!(
-        "output   about {} per step file, {} step files{states}, {} in all{free}",
-        disk::size(forecast.step),
-        forecast.n_files,
-        disk::size(forecast.total)
-    ));
 }
 
 /// Prints how cage and balls roll at the largest speed of the scene, and how often balls pass a point of each raceway

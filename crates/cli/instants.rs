@@ -25,6 +25,17 @@ pub struct Due {
     pub files_every: u64,
 }
 
+impl Due {
+    fn has_files(&self, n: u64) -> bool {
+        n == self.last || n.is_multiple_of(self.files_every)
+    }
+
+    /// Each step file that is due has rows besides.
+    fn has_rows(&self, n: u64) -> bool {
+        n.is_multiple_of(self.tables_every) || self.has_files(n)
+    }
+}
+
 /// What has been written of a run.
 #[derive(Clone, Copy, Default)]
 pub struct WrittenSteps {
@@ -76,6 +87,10 @@ pub trait OverInstants {
     fn reduce(&mut self) -> Result<(), Failure>;
     /// Appends a line per table. Rank 0 alone may fail.
     fn append_rows(&mut self) -> Result<(), Failure>;
+    /// Appends the lines of tables that only instants with step files have. Rank 0 alone may fail.
+    fn append_profiles(&mut self) -> Result<(), Failure> {
+        Ok(())
+    }
     /// Writes the step files of the known instant, or hands them over to be written; ranks recover its stress first,
     /// then rank 0 alone may fail.
     fn append_files(&mut self, restart: RestartState) -> Result<(), Failure>;
@@ -130,7 +145,7 @@ pub fn record(course: &mut impl OverInstants, restart: RestartState) -> Result<(
     if n.is_multiple_of(due.tables_every) {
         agree(append_rows(course))?;
     }
-    if n == due.last || n.is_multiple_of(due.files_every) {
+    if due.has_files(n) {
         agree(append_files(course, restart))?;
     }
     Ok(())
@@ -145,6 +160,9 @@ pub fn append_rows(course: &mut impl OverInstants) -> Result<(), Failure> {
 
 /// Hands over the known instant to be written as step files, unless it was. To be called by all ranks or none: they
 /// must have agreed on what was written before.
+///
+/// A step file vouches for the tables up to its step, and a run that goes on from it cuts them there. Where only the
+/// end of this process asks for a file, rows that are not due are written behind it: the run that goes on drops them.
 fn append_files(course: &mut impl OverInstants, restart: RestartState) -> Result<(), Failure> {
     let (n, written) = (course.now(), *course.written());
     if written.file == Some(n) {
@@ -153,13 +171,23 @@ fn append_files(course: &mut impl OverInstants, restart: RestartState) -> Result
     if restart == RestartState::Stored {
         course.written().state = Some(n);
     }
-    if written.row != Some(n) {
-        // A step file vouches for the tables up to its step.
+    let due = course.due();
+    append_missing(course, [due.has_rows(n), due.has_files(n)])?;
+    agree(course.append_files(restart))?;
+    course.written().file = Some(n);
+    append_missing(course, [!due.has_rows(n), !due.has_files(n)])
+}
+
+/// Appends rows of the known instant, unless they are there, and those that step files have besides.
+fn append_missing(course: &mut impl OverInstants, [rows, profiles]: [bool; 2]) -> Result<(), Failure> {
+    let n = course.now();
+    if rows && course.written().row != Some(n) {
         agree(append_rows(course))?;
     }
-    course.append_files(restart)?;
-    course.written().file = Some(n);
-    Ok(())
+    match profiles {
+        true => agree(course.append_profiles()),
+        false => Ok(()),
+    }
 }
 
 /// Saves the state and says that the run can be resumed.

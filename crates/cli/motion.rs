@@ -333,6 +333,12 @@ impl OverInstants for March<'_> {
         self.files.write_probes(state.step, time, None, &shown)
     }
 
+    fn append_profiles(&mut self) -> Result<(), Failure> {
+        let (model, motion, state) = (self.model, self.motion, &self.state);
+        let (shown, time) = (Shown::Motion { model, motion, state }, motion.time(state.step));
+        self.files.write_profiles(state.step, time, None, &shown)
+    }
+
     fn append_files(&mut self, restart: RestartState) -> Result<(), Failure> {
         let (model, motion, state) = (self.model, self.motion, &self.state);
         let shown = Shown::Motion { model, motion, state };
@@ -341,8 +347,6 @@ impl OverInstants for March<'_> {
         if !self.files.are_written_here() {
             return Ok(());
         }
-        let time = motion.time(state.step);
-        self.files.write_profiles(state.step, time, None, &shown)?;
         let shown = Recorded::new(model, motion, state, gathered, (self.scene, kept), restart)?;
         let (newton, watch) = (self.newton, self.watch.clone());
         self.files.write_fields_later(restart, move |stress| {

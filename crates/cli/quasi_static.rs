@@ -443,13 +443,18 @@ impl OverInstants for QuasiStaticRun<'_, '_, '_> {
         self.files.write_probes(step, time, None, &shown)
     }
 
+    fn append_profiles(&mut self) -> Result<(), Failure> {
+        let (step, time) = (self.step, self.time(self.step));
+        self.files
+            .write_profiles(step, time, None, &shown(self.model, &self.last))
+    }
+
     fn append_files(&mut self, restart: RestartState) -> Result<(), Failure> {
         let (model, last, scene) = (self.model, &self.last, self.scene);
         let at = (self.step, self.time(self.step));
         let (apart, n_steps) = (self.settings.output_every, self.settings.n_steps);
         let kept = scene.output.every.kept(at.0, apart, n_steps);
         let gathered = self.files.gather_stress(&shown(model, last), kept);
-        self.files.write_profiles(at.0, at.1, None, &shown(model, last))?;
         if !self.files.are_written_here() {
             return Ok(());
         }

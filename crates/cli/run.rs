@@ -11,6 +11,7 @@ use dynamics::{Model, Pose, StaticSolution, StaticSolver};
 use results::disk::Forecast;
 use results::failure::{Failure, agree, of_all};
 use results::files::Files;
+use results::list_folder::{is_free_again, require_room};
 use results::memory::Forecasts;
 use results::motion_fields::RestartState;
 use results::shown::Shown;
@@ -289,13 +290,18 @@ impl OverInstants for LoadCases<'_, '_, '_> {
         files.write_probes(step, step as f64, *value, &shown)
     }
 
+    fn append_profiles(&mut self) -> Result<(), Failure> {
+        let step = self.now();
+        let (files, shown, _, (value, _)) = self.last();
+        files.write_profiles(step, step as f64, *value, &shown)
+    }
+
     fn append_files(&mut self, _restart: RestartState) -> Result<(), Failure> {
         let (step, last) = (self.now(), self.due().last);
         let kept = self.scene.output.every.kept(step, 1, last);
-        let (files, shown, solved, (value, point)) = self.last();
+        let (files, shown, solved, (_, point)) = self.last();
         let (time, solution) = (step as f64, &solved.solution);
         let gathered = files.gather_stress(&shown, kept);
-        files.write_profiles(step, time, *value, &shown)?;
         files.write_fields(|stress| {
             fields::record(&shown, solution, (stress, gathered), (step, time), (point, kept))
         })
@@ -312,7 +318,8 @@ fn run_list(
     if let Some(part) = part {
         part.check(&list.path, &list.analysis)?;
     }
-    let dir = folder::choose(&list.path, out)?;
+    let dir = folder::choose_for_list(&list.path, out, |dir| is_free_again(&list.path, dir))?;
+    agree(require_room(&list.path, &dir))?;
     note_unshared(&list.bearings[0].scene);
     match &list.analysis {
         Analysis::Dynamic(dynamic) => several_motion::run(list, dynamic, &dir, limits, start)?,

@@ -8,11 +8,10 @@ use comm::Communicator;
 use contact::Side;
 use results::failure::Failure;
 use results::files::say_folder;
+use results::list_folder::ListStart;
 use results::seat::{SeatSummaries, SeatSummary};
-use results::several::SCENE_TEXT;
 use results::snapshot::Snapshot;
 use results::survey::require_same_scene;
-use results::whole::{make_asked_folder, write_new};
 use scene::{Analysis, BuildError, Rings, Scene, SeveralScene};
 
 use crate::progress::Progress;
@@ -46,15 +45,12 @@ pub fn of_seats(name: &str, seats: &SeatSummaries) -> Vec<String> {
 }
 
 /// Makes the folder of a run, with the scene beside the results of its bearings. Rank 0 does it for all.
-pub fn make_folder(scene: &SeveralScene, dir: &Path) -> Result<(), Failure> {
-    if !Communicator::world().is_root() {
-        return Ok(());
+pub fn make_folder(scene: &SeveralScene, dir: &Path) -> Result<ListStart, Failure> {
+    let start = ListStart::begin(scene, dir)?;
+    if Communicator::world().is_root() {
+        say_folder(dir);
     }
-    make_asked_folder(dir)?;
-    say_folder(dir);
-    Ok(write_new(&dir.join(SCENE_TEXT), |file| {
-        file.write_all(scene.text.as_bytes())
-    })?)
+    Ok(start)
 }
 
 /// The numbers of a bearing at rest.

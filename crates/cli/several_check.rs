@@ -11,6 +11,7 @@ use scene::{Analysis, SeveralScene, ShaftKind, build_assembly, have_same_rings};
 use crate::bodies::{orders_of_seats, print_bodies};
 use crate::ring_sizes::print_rings;
 use crate::several_read::{all_doubts, surveys};
+use crate::several_ready::forecast;
 use crate::shared::print_effects;
 
 /// Prints what a run would be.
@@ -68,14 +69,25 @@ pub fn check(scene: &SeveralScene) -> Result<(), Failure> {
         peak as f64 / 1e6,
         rayon::current_num_threads()
     ));
+    say_output(scene, &assembly);
     print_advice(scene, &assembly);
     answer::add("peak_memory_bytes", peak);
     answer::add("shaft_dofs", assembly.shaft.n());
     Ok(())
 }
 
+/// Says how much a run would write.
+fn say_output(scene: &SeveralScene, assembly: &Assembly) {
+    let output = forecast(scene, assembly, 0);
+    match &scene.analysis {
+        Analysis::Sweep(sweep) => output.times(sweep.points.len() as u64).say(),
+        _ => output.say(),
+    }
+}
+
 fn print_advice(scene: &SeveralScene, assembly: &Assembly) {
-    for line in assumed(scene) {
+    let assumed = assumed(scene);
+    for line in &assumed {
         print::line(format_args!("assumed  {line}"));
     }
     let advice = [all_doubts(scene, assembly), orders_of_all(scene, assembly)].concat();
@@ -83,6 +95,7 @@ fn print_advice(scene: &SeveralScene, assembly: &Assembly) {
         print::line(format_args!("advice   {line}"));
     }
     answer::add("advice", &advice);
+    answer::add("assumed", &assumed);
 }
 
 /// Numbers that names stand for, once each.

@@ -7,12 +7,13 @@ use assembly::{Assembly, MountedBearing};
 use comm::{Communicator, print};
 use dynamics::Model;
 use results::bodies::{BodiesElsewhere, bodies_elsewhere, where_bodies_are};
-use results::cut::TableCut;
+use results::cut::{TableCut, last_row};
 use results::failure::{Failure, agree};
 use results::files::{Files, ResumedFrom};
+use results::list_folder::ListStart;
 use results::memory::Forecasts;
 use results::seat::{SeatFolder, SeatSummaries};
-use results::several::SeveralTables;
+use results::several::{ListState, SHAFT_TABLE, SeveralTables};
 use results::snapshot::Snapshot;
 use results::state_arrays::Arrays;
 use results::summary::{Findings, Summary};
@@ -23,9 +24,10 @@ use timer::Laps;
 use crate::several::of_seats;
 use crate::several_state::StoredBearing;
 
-/// Makes the files of all bearings, which begin as their snapshots show.
+/// Makes the files of all bearings, which begin as their snapshots show, in the folder of a run that begins.
 pub fn create_files(
-    (assembly, dir): (&Assembly, &Path),
+    begun: ListStart,
+    assembly: &Assembly,
     placed: &[Scene],
     first: Vec<Snapshot>,
     surveys: Vec<Survey>,
@@ -33,10 +35,11 @@ pub fn create_files(
     let mut files = Vec::new();
     for (i, (placed, survey)) in placed.iter().zip(surveys).enumerate() {
         let mounted = &assembly.bearings[i];
-        let own = dir.join(&mounted.name);
+        let own = begun.dir.join(&mounted.name);
         let made = Files::create_part(placed, &mounted.model, &own, &first[i], survey, &[]);
         files.push(agree(made)?);
     }
+    agree(begun.end())?;
     Ok(files)
 }
 
@@ -73,6 +76,30 @@ fn resume_files(
     };
     let files = Files::resume(&bearing.scene, model, bearing.lock, &own, survey, &from);
     Ok((agree(files)?, bearing.scene))
+}
+
+/// Where the tables beside the folders of the bearings are to be cut to go on from the step that was read: behind the
+/// last row that its file tells of in the first bearing. A run that stopped has a row more where none was due.
+pub fn cuts_of_list(
+    dir: &Path,
+    first: &ListState,
+    bearing: &StoredBearing,
+) -> Result<Vec<TableCut>, Failure> {
+    agree(find_cuts(dir, first, bearing).map_err(Failure::from))
+}
+
+fn find_cuts(dir: &Path, first: &ListState, bearing: &StoredBearing) -> anyhow::Result<Vec<TableCut>> {
+    let step = bearing.record.step;
+    let stamp = bearing
+        .record
+        .tables
+        .as_ref()
+        .and_then(|tables| tables.get(SHAFT_TABLE));
+    let last = match stamp.filter(|_| Communicator::world().is_root()) {
+        Some(stamp) => last_row(&bearing.folder.join(SHAFT_TABLE), (step, *stamp))?,
+        None => None,
+    };
+    SeveralTables::cuts(dir, first, last.unwrap_or(step))
 }
 
 /// Closes the files of a bearing by its number, whose scene is `placed`, and writes its summary into its folder `own`;

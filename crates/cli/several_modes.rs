@@ -95,16 +95,17 @@ fn write(
     dir: &Path,
     start: Instant,
 ) -> Result<(), Failure> {
-    make_folder(scene, dir)?;
+    let begun = make_folder(scene, dir)?;
     let shown = ListState::of_equilibrium(assembly, solution);
     let mut tables = SeveralTables::create(dir, None, &shown)?;
+    begun.end()?;
     tables.append((0, 0.0), None, assembly, &shown)?;
     write_tables_of_several(dir, assembly, found, &free_dofs(assembly))?;
     for (i, bearing) in scene.bearings.iter().enumerate() {
         let (model, equilibrium) = (&assembly.bearings[i].model, &solution.bearings[i]);
         let (own, placed) = (dir.join(&bearing.name), placed(&bearing.scene, equilibrium)?);
         let set: ModeSet = set_of_several(found, |mode| &mode.bearings[i]);
-        let mut files = ModeFiles::create(&placed, model, &own)?;
+        let mut files = ModeFiles::create_part(&placed, model, &own)?;
         files.write(&placed, model, ModeBody::Bearing, &set)?;
         let run = files.finish()?;
         let snapshot = Snapshot::of_equilibrium(equilibrium, None);

@@ -31,7 +31,7 @@ use crate::motion::LAST_GOOD;
 use crate::options::Limits;
 use crate::progress::Progress;
 use crate::several::{self, make_folder, require_same_list, say_types, solving, warnings_at};
-use crate::several_files::{close_bearing, create_files, resume_all, resume_tables};
+use crate::several_files::{close_bearing, create_files, cuts_of_list, resume_all, resume_tables};
 use crate::several_instant::rolling_start;
 use crate::several_ledger::LedgerWatch;
 use crate::several_read::{ReadList, read_list, require_memory_of_all};
@@ -70,10 +70,10 @@ pub fn run(
     let placed = placed.map(|(bearing, found)| several::placed(&bearing.scene, found));
     let placed = agree(placed.collect::<Result<Vec<Scene>, Failure>>())?;
     drop(solution);
-    agree(make_folder(scene, dir))?;
+    let begun = agree(make_folder(scene, dir))?;
     let first = ListState::of_motion(&assembly, &motion, &state);
     let tables = agree(SeveralTables::create(dir, None, &first).map_err(Failure::from))?;
-    let files = create_files((&assembly, dir), &placed, snapshots(&motion, &state), surveys)?;
+    let files = create_files(begun, &assembly, &placed, snapshots(&motion, &state), surveys)?;
     let mut march = ListMarch {
         watches: new_watches(&assembly),
         scene,
@@ -148,7 +148,7 @@ pub fn resume(
     let restored = agree(restored)?;
     let first = ListState::of_motion(&assembly, &motion, &restored.state);
     // Nothing is changed before all is known to fit.
-    let cuts = agree(SeveralTables::cuts(&dir, &first, step).map_err(Failure::from))?;
+    let cuts = cuts_of_list(&dir, &first, &bearings[0])?;
     let model = |i: usize| &assembly.bearings[i].model;
     let snapshot = |i: usize| Snapshot::of_motion(&motion.bearings[i], &restored.state.bearings[i]);
     let found = |i: usize| (model(i), snapshot(i), &restored.reductions[i]);

@@ -30,7 +30,7 @@ use crate::instants::{self, Due, OverInstants, WrittenSteps};
 use crate::options::Limits;
 use crate::progress::Progress;
 use crate::several::{self, make_folder, require_same_list, say_types, solving, warnings_at};
-use crate::several_files::{close_bearing, create_files, resume_all, resume_tables};
+use crate::several_files::{close_bearing, create_files, cuts_of_list, resume_all, resume_tables};
 use crate::several_instant::{load_at, poses, rolling_of_all};
 use crate::several_quasi_state::{self, ListCounts};
 use crate::several_read::{ReadList, read_list, require_memory_of_all};
@@ -67,11 +67,11 @@ pub fn run(
     let placed = placed.map(|(bearing, found)| several::placed(&bearing.scene, found));
     let placed = agree(placed.collect::<Result<Vec<Scene>, Failure>>())?;
     // The first solution makes the folder: a scene that has none leaves no files.
-    agree(make_folder(scene, dir))?;
+    let begun = agree(make_folder(scene, dir))?;
     let tables = SeveralTables::create(dir, None, &ListState::of_equilibrium(&list.assembly, &first));
     let tables = agree(tables.map_err(Failure::from))?;
     let snapshots = (0..placed.len()).map(|i| list.snapshot(&first, i)).collect();
-    let files = create_files((&list.assembly, dir), &placed, snapshots, surveys)?;
+    let files = create_files(begun, &list.assembly, &placed, snapshots, surveys)?;
     let counts = ListCounts {
         of_bearings: vec![[0; 2]; first.bearings.len()],
         ..ListCounts::default()
@@ -132,7 +132,7 @@ pub fn resume(
     list.solver.restore_columns(restored.columns);
     // Nothing is changed before all is known to fit.
     let shown = ListState::of_equilibrium(&list.assembly, &last);
-    let cuts = agree(SeveralTables::cuts(&dir, &shown, step).map_err(Failure::from))?;
+    let cuts = cuts_of_list(&dir, &shown, &bearings[0])?;
     let model = |i: usize| &list.assembly.bearings[i].model;
     let found = |i: usize| (model(i), list.snapshot(&last, i), &restored.reductions[i]);
     let (files, placed) = resume_all(bearings, surveys, found)?;

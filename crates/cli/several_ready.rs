@@ -1,4 +1,4 @@
-//! What a list of bearings in motion needs before its first step: room on the disk, and its matrices.
+//! What a list of bearings needs before its first step: room on the disk, and in motion its matrices.
 
 use std::path::Path;
 
@@ -20,14 +20,14 @@ pub fn require_space(
     (dir, done): (&Path, u64),
     limits: &Limits,
 ) -> Result<(), Failure> {
+    forecast(scene, assembly, done).require_space(dir, limits.ignore_disk_space)
+}
+
+/// Size of the files of all bearings after a step; of a list at rest those of one load case.
+pub fn forecast(scene: &SeveralScene, assembly: &Assembly, done: u64) -> Forecast {
     let bearings = scene.bearings.iter().zip(&assembly.bearings);
     let each = bearings.map(|(bearing, mounted)| Forecast::new(&bearing.scene, &mounted.model, done));
-    let all = each.reduce(|sum, own| Forecast {
-        step: sum.step + own.step,
-        total: sum.total + own.total,
-        ..sum
-    });
-    all.map_or(Ok(()), |all| all.require_space(dir, limits.ignore_disk_space))
+    Forecast::of_all(&each.collect::<Vec<_>>())
 }
 
 /// Bearings and shaft ready to move.

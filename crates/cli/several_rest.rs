@@ -31,6 +31,7 @@ use crate::several::{
 };
 use crate::several_files::close_bearing;
 use crate::several_read::{ReadList, read_list, require_memory_of_all};
+use crate::several_ready::forecast;
 
 /// Runs a scene at rest, or a part of its sweep; its results go into a folder.
 pub fn run(
@@ -51,7 +52,9 @@ pub fn run(
         doubts,
         surveys,
     } = agree(read_list(&points[0].1, scene, |assembly| {
-        require_memory_of_all(scene, assembly)
+        require_memory_of_all(scene, assembly)?;
+        let all = forecast(scene, assembly, 0).times(points.len() as u64);
+        all.require_space(dir, limits.ignore_disk_space)
     }))?;
     let read = start.elapsed().as_secs_f64();
     progress.stage("factoring the stiffness of the rings");
@@ -179,16 +182,18 @@ impl SolvedLists {
         let mut laps = solver.laps();
         laps.add(READ, read);
         laps.add(TOTAL, start.elapsed().as_secs_f64());
-        let seats = files.finish(scene, (&self.assembly, &last), &solver, start);
+        let status = ended.as_ref().err();
+        let status = status.map_or("finished".to_string(), Failure::status);
+        let found = (&self.assembly, &last, &*status);
+        let seats = files.finish(scene, found, &solver, start);
         // A run that failed says why, not what its failure did to the files.
         let seats = match (seats, &ended) {
             (Err(_), Err(_)) => return ended,
             (seats, _) => seats?,
         };
         self.warnings.extend(seats);
-        let status = ended.as_ref().err();
         let findings = SeveralFindings {
-            status: status.map_or("finished".to_string(), Failure::status),
+            status,
             iterations: self.iterations,
             residual: last.shaft.error,
             warnings: self.warnings,
@@ -304,7 +309,7 @@ impl SeveralFiles {
         solution: &AssemblySolution,
         dir: &Path,
     ) -> Result<SeveralFiles, Failure> {
-        agree(make_folder(scene, dir))?;
+        let begun = agree(make_folder(scene, dir))?;
         let column = column(scene);
         let first = ListState::of_equilibrium(assembly, solution);
         let tables = SeveralTables::create(dir, column, &first);
@@ -323,6 +328,7 @@ impl SeveralFiles {
             let files = Files::create_part(&placed, &mounted.model, &own, &snapshot, survey, &[]);
             bearings.push((own, agree(files)?));
         }
+        agree(begun.end())?;
         if let Some(column) = column {
             print_sweep_head(column, assembly);
         }
@@ -361,11 +367,11 @@ impl SeveralFiles {
         Ok(())
     }
 
-    /// Closes the files of the bearings; warns of their seats. Collective.
+    /// Closes the files of the bearings, which have the status of the run; warns of their seats. Collective.
     fn finish(
         self,
         scene: &SeveralScene,
-        (assembly, solution): (&Assembly, &AssemblySolution),
+        (assembly, solution, status): (&Assembly, &AssemblySolution, &str),
         solver: &AssemblySolver,
         start: Instant,
     ) -> Result<Vec<String>, Failure> {
@@ -377,7 +383,7 @@ impl SeveralFiles {
             let forecast = Forecasts::at_rest(forecast, &mounted.model);
             let found = &solution.bearings[i];
             let findings = Findings {
-                status: "finished".to_string(),
+                status: status.to_string(),
                 last: snapshot(found),
                 points: Vec::new(),
                 iterations: std::collections::BTreeMap::from([

@@ -9,6 +9,7 @@ use checkpoint::{FolderLock, StateArray, StepRecord, has_state, read_about, read
 use comm::print;
 use results::about::{MAY_CHANGE, OVERRIDES, SCENE_FILE, require_named_files, scene_file};
 use results::failure::{Failure, agree};
+use results::list_folder::{ended_early, is_unfinished};
 use results::reduction::take_arrays;
 use results::several::{BEARINGS_TABLE, SCENE_TEXT};
 use results::state_arrays::{self, Arrays};
@@ -55,7 +56,8 @@ pub struct Restored {
 /// Whether a folder has results of a list of bearings: rank 0 looks for all.
 pub fn is_list(dir: &Path) -> Result<bool, Failure> {
     let has = |name: &str| dir.join(name).exists();
-    let found = of_root(|| Ok(u64::from(has(BEARINGS_TABLE) && has(SCENE_TEXT))))?;
+    let begun = || Ok::<_, Failure>(has(BEARINGS_TABLE) && has(SCENE_TEXT) || is_unfinished(dir)?);
+    let found = of_root(|| begun().map(u64::from))?;
     Ok(found == 1)
 }
 
@@ -172,6 +174,9 @@ struct Locked {
 fn lock(dir: &Path) -> Result<Locked, Failure> {
     if !dir.is_dir() {
         return Err(anyhow!("{} is no folder; expected the results of a run", dir.display()).into());
+    }
+    if is_unfinished(dir)? {
+        return Err(ended_early(dir));
     }
     let path = dir.join(SCENE_TEXT);
     let text =

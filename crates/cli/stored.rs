@@ -7,6 +7,7 @@ use anyhow::{Context, anyhow};
 use checkpoint::{FolderLock, Stamps, StateArray, StepRecord};
 use comm::print;
 use dynamics::motion::{Motion, MotionState};
+use results::answer;
 use results::failure::Failure;
 use results::reduction::take_arrays;
 use results::state_arrays::{self, Arrays};
@@ -77,8 +78,9 @@ impl OverTime {
         .into())
     }
 
-    /// Says that a run has finished with its last step at a place.
+    /// Says that a run has finished with its last step at a place, and names its folder in the answer of the command.
     pub fn say_finished(&self, dir: &Path, at: &str) {
+        answer::add_results(dir);
         print::line(format_args!(
             "nothing to do: {} has finished with step {at}; a longer duration goes on from there, --set \
              {}.duration=...",

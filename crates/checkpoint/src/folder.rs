@@ -134,6 +134,15 @@ pub fn clear_unfinished_start(lock: &FolderLock, tables: &[&str]) -> Result<bool
     Ok(true)
 }
 
+/// Makes the folder one of a run without a step, for a run that needs steps of other folders too and has none there:
+/// its own are moved aside, into the folder returned if there are any.
+pub fn begin_anew(lock: &FolderLock) -> Result<Option<PathBuf>, CheckpointError> {
+    let dir = lock.dir();
+    let aside = move_aside(dir, &committed_steps(dir)?)?;
+    note_start(dir)?;
+    Ok(aside)
+}
+
 /// Says that a run begins here.
 pub(crate) fn note_start(dir: &Path) -> Result<(), CheckpointError> {
     let path = dir.join(STARTING);

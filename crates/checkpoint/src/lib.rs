@@ -61,8 +61,8 @@ pub use checksum::file_checksum;
 pub use describe::{ArrayDescription, FileDescription, describe};
 pub use error::CheckpointError;
 pub use folder::{
-    clear_unfinished_start, committed_steps, is_unfinished_start, new_superseded_folder, newest_step,
-    require_run, run_of,
+    begin_anew, clear_unfinished_start, committed_steps, is_unfinished_start, new_superseded_folder,
+    newest_step, require_run, run_of,
 };
 pub use grid::Grid;
 pub use growing::{FileStamp, GrowingFile, Stamps, start_of};

@@ -4,7 +4,7 @@
 //! these steps again, so that its tables end up as those of a run that was never interrupted.
 
 use std::fs::File;
-use std::io::{BufRead, BufReader, Seek, SeekFrom, Write};
+use std::io::{BufRead, BufReader, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, anyhow};
@@ -119,7 +119,24 @@ impl TableCut {
     }
 }
 
-fn require_header(lines: &mut Lines, header: &str, path: &Path) -> anyhow::Result<()> {
+/// The step of the last row of a table up to where the file of step `last` says that it ended; None if it has none.
+pub fn last_row(path: &Path, (last, stamp): (u64, FileStamp)) -> anyhow::Result<Option<u64>> {
+    if let Some(doubt) = doubt(path, stamp, last)? {
+        return Err(anyhow!("{doubt}; put it back, or run the scene again"));
+    }
+    let mut lines = Lines {
+        reader: BufReader::new(open_own(path)?.take(stamp.length)),
+        bytes: Vec::new(),
+    };
+    let mut newest = None;
+    while let Some(line) = lines.next(path)? {
+        let step = line.split(',').next().and_then(|cell| cell.parse().ok());
+        newest = step.or(newest);
+    }
+    Ok(newest)
+}
+
+fn require_header(lines: &mut Lines<File>, header: &str, path: &Path) -> anyhow::Result<()> {
     let found = lines.next(path)?.unwrap_or_default().trim_end().to_string();
     if found == header {
         return Ok(());
@@ -131,12 +148,12 @@ fn require_header(lines: &mut Lines, header: &str, path: &Path) -> anyhow::Resul
 }
 
 /// Lines of a file with their ends; bytes that are no text end the reading like the end of the file.
-struct Lines {
-    reader: BufReader<File>,
+struct Lines<R> {
+    reader: BufReader<R>,
     bytes: Vec<u8>,
 }
 
-impl Lines {
+impl<R: Read> Lines<R> {
     fn next(&mut self, path: &Path) -> anyhow::Result<Option<String>> {
         self.bytes.clear();
         let read = self.reader.read_until(b'\n', &mut self.bytes);

@@ -10,6 +10,7 @@ use dynamics::{Hold, Model, RingModel};
 use fem::quadrature::stiffness_rule;
 use scene::{Analysis, Dynamic, FieldPrecision, Scene, StressOutput};
 
+use super::answer;
 use super::fields;
 use super::region::Region;
 use crate::failure::Failure;
@@ -103,6 +104,46 @@ impl Forecast {
             n_states,
             total: n_files * others + fields + n_states * state + reduction + n_rows * cells * CELL_BYTES,
         }
+    }
+
+    /// Of bearings that write side by side: `step` is the mean of their step files.
+    pub fn of_all(bearings: &[Forecast]) -> Forecast {
+        let sum = |of: fn(&Forecast) -> u64| bearings.iter().map(of).sum::<u64>();
+        Forecast {
+            step: sum(|own| own.step) / (bearings.len() as u64).max(1),
+            n_files: sum(|own| own.n_files),
+            n_states: sum(|own| own.n_states),
+            total: sum(|own| own.total),
+        }
+    }
+
+    /// Of so many load cases, each as large as this.
+    pub fn times(self, n: u64) -> Forecast {
+        Forecast {
+            step: self.step,
+            n_files: n * self.n_files,
+            n_states: n * self.n_states,
+            total: n * self.total,
+        }
+    }
+
+    /// Says how much a run would write, for people and in the answer of the command.
+    pub fn say(&self) {
+        answer::add("output_bytes", self.total);
+        answer::add("step_files", self.n_files);
+        let free = free_bytes(Path::new(".")).map_or(String::new(), |free| {
+            format!("; the disk of this folder has {} free", size(free))
+        });
+        let states = match self.n_states < self.n_files {
+            true => format!(" ({} with a restart state)", self.n_states),
+            false => String::new(),
+        };
+        print::line(format_args!(
+            "output   about {} per step file, {} step files{states}, {} in all{free}",
+            size(self.step),
+            self.n_files,
+            size(self.total)
+        ));
     }
 
     /// Fails when the disk of `dir` has no room for the results, unless told to go on, which leaves a note.

@@ -243,7 +243,7 @@ impl Files {
         Ok(())
     }
 
-    /// Appends the profiles of a step whose fields are written next.
+    /// Appends the profiles of a step whose fields are written too.
     pub fn write_profiles(
         &mut self,
         step: u64,

@@ -6,7 +6,7 @@ use std::os::unix::ffi::OsStringExt;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, anyhow};
-use checkpoint::{FolderLock, clear_unfinished_start, is_unfinished_start};
+use checkpoint::{CheckpointError, FolderLock, clear_unfinished_start, is_unfinished_start};
 use comm::{Communicator, print};
 
 use crate::failure::{Failure, agree};
@@ -36,12 +36,25 @@ const RESULT_FILES: [&str; 14] = [
     "run.vtkhdf",
 ];
 
-/// Where the results of `scene` go: `out`, which must not hold results, or the next free `results/NAME`.
-/// Rank 0 chooses for all.
+/// Where the results of `scene` go: `out`, which must not hold results, or the next free `results/NAME`; what a run
+/// left that ended before its first step is none. Rank 0 chooses for all.
 pub fn choose(scene: &Path, out: Option<PathBuf>) -> Result<PathBuf, Failure> {
+    choose_by(|| choose_alone(scene, out, is_unfinished_start))
+}
+
+/// The same for a list of bearings, where `is_unfinished` tells of a folder what a run of a list left in it.
+pub fn choose_for_list(
+    scene: &Path,
+    out: Option<PathBuf>,
+    is_unfinished: impl Fn(&Path) -> Result<bool, CheckpointError>,
+) -> Result<PathBuf, Failure> {
+    choose_by(|| choose_alone(scene, out, is_unfinished))
+}
+
+fn choose_by(find: impl FnOnce() -> Result<PathBuf, Failure>) -> Result<PathBuf, Failure> {
     let comm = Communicator::world();
     let chosen = agree(if comm.is_root() {
-        choose_alone(scene, out)
+        find()
     } else {
         Ok(PathBuf::new())
     })?;
@@ -49,7 +62,11 @@ pub fn choose(scene: &Path, out: Option<PathBuf>) -> Result<PathBuf, Failure> {
     Ok(PathBuf::from(OsString::from_vec(bytes)))
 }
 
-fn choose_alone(scene: &Path, out: Option<PathBuf>) -> Result<PathBuf, Failure> {
+fn choose_alone(
+    scene: &Path,
+    out: Option<PathBuf>,
+    is_unfinished: impl Fn(&Path) -> Result<bool, CheckpointError>,
+) -> Result<PathBuf, Failure> {
     let dir = match out {
         Some(dir) => dir,
         None => {
@@ -66,7 +83,7 @@ fn choose_alone(scene: &Path, out: Option<PathBuf>) -> Result<PathBuf, Failure> 
         }
     };
     require_writable(&dir)?;
-    require_no_results(&dir)?;
+    require_no_results(&dir, is_unfinished)?;
     Ok(dir)
 }
 
@@ -177,8 +194,11 @@ pub fn prepare(dir: &Path) -> Result<FolderLock, Failure> {
     Ok(lock)
 }
 
-fn require_no_results(dir: &Path) -> Result<(), Failure> {
-    if !dir.exists() || is_unfinished_start(dir)? && !dir.join(SUMMARY_FILE).exists() {
+fn require_no_results(
+    dir: &Path,
+    is_unfinished: impl Fn(&Path) -> Result<bool, CheckpointError>,
+) -> Result<(), Failure> {
+    if !dir.exists() || is_unfinished(dir)? && !dir.join(SUMMARY_FILE).exists() {
         return Ok(());
     }
     let file = RESULT_FILES

@@ -22,6 +22,7 @@ pub mod folder;
 mod free_columns;
 pub mod gauges;
 pub mod integrity;
+pub mod list_folder;
 pub mod list_memory;
 pub mod load_matrix;
 pub mod log;

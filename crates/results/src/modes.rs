@@ -66,10 +66,16 @@ pub struct ModeFiles {
 }
 
 impl ModeFiles {
-    /// Creates the folder's files.
+    /// Creates the folder's files, and says where they are.
     pub fn create(scene: &Scene, model: &Model, dir: &Path) -> Result<ModeFiles, Failure> {
-        let output = Output::create_in(folder::prepare(dir)?, &mesh_file(scene, model)?, storage(scene))?;
+        let files = ModeFiles::create_part(scene, model, dir)?;
         say_folder(dir);
+        Ok(files)
+    }
+
+    /// The same for the folder of a part of a run, of which nothing is said.
+    pub fn create_part(scene: &Scene, model: &Model, dir: &Path) -> Result<ModeFiles, Failure> {
+        let output = Output::create_in(folder::prepare(dir)?, &mesh_file(scene, model)?, storage(scene))?;
         Ok(ModeFiles {
             output,
             table: tables::create(dir, TABLE, &columns(tied_sides(model)))?,

@@ -89,7 +89,8 @@ impl SeveralTables {
         Ok(SeveralTables::of(made.collect::<anyhow::Result<_>>()?))
     }
 
-    /// Looks where the files of an earlier run are to be cut to go on after its step `last`; on rank 0.
+    /// Looks where the files of an earlier run are to be cut, which must have rows of the step `last` and none of later
+    /// ones that count; on rank 0.
     pub fn cuts(dir: &Path, first: &ListState, last: u64) -> anyhow::Result<Vec<TableCut>> {
         if !Communicator::world().is_root() {
             return Ok(Vec::new());
