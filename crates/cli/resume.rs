@@ -13,6 +13,7 @@ use anyhow::{Context, anyhow};
 use checkpoint::{StepRecord, has_state, newest_step, read_about, read_any_step, step_file_name};
 use clap::Args;
 use comm::print;
+use input::shell_word;
 use results::about::{MAY_CHANGE, OVERRIDES, SCENE_FILE, WARNINGS, require_same_meshes, scene_file};
 use results::failure::{Failure, agree};
 use results::integrity::doubts;
@@ -141,7 +142,7 @@ fn choose_step(dir: &Path, step: Option<u64>) -> Result<u64, Failure> {
             "{} holds no committed step: the run ended before its first one; start it again with raceway run SCENE \
              --out {}",
             dir.display(),
-            dir.display()
+            shell_word(dir.display())
         )
         .into());
     }
@@ -158,7 +159,7 @@ fn choose_step(dir: &Path, step: Option<u64>) -> Result<u64, Failure> {
     if !steps.contains(&step) && checkpoint::all_steps(dir)?.contains(&step) {
         return Err(anyhow!(
             "step {step} is in a pack; raceway pack {} --undo makes files of the packed steps again",
-            dir.display()
+            shell_word(dir.display())
         )
         .into());
     }
