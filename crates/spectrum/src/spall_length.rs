@@ -17,7 +17,7 @@ use scene::{Scene, ShaftMotion, geometry};
 
 use crate::passages::{BallAt, LEAST_QUIET, PassedBearing, ShaftRecord, SpallPassage, passages};
 use crate::signal::equal_rate;
-use crate::{require_folder, scene_of};
+use crate::{require_folder, require_motion, scene_of};
 
 /// What the command line asks for.
 #[derive(Debug, Args)]
@@ -43,6 +43,7 @@ pub fn spall_length(command: &SpallLengthCommand) -> Result<(), Failure> {
     require_folder(dir)?;
     plot::require_one_bearing(dir)?;
     let scene = scene_of(dir)?;
+    require_motion(dir, &scene)?;
     let side = Side::BOTH.into_iter().find(|side| side.name() == command.ring);
     let side = side.expect("the command line knows both names");
     let record = record(dir, &scene)?;
