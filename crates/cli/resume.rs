@@ -244,7 +244,10 @@ fn scene_of(
     let path = match (&request.scene, about.get(SCENE_FILE)) {
         (Some(path), _) => path.clone(),
         (None, Some(path)) => scene_file(&request.dir, path),
-        (None, None) => return Err(anyhow!("step {} does not say where its scene is", record.step).into()),
+        (None, None) => {
+            let step = request.dir.join(step_file_name(record.step));
+            return Err(OverTime::without_scene_file(&step, &request.dir));
+        }
     };
     if request.scene.is_some() || path.exists() {
         if !request.stored_scene {
