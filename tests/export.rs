@@ -6,7 +6,7 @@ use checkpoint::{read_mesh, read_step};
 
 use crate::util::lockstep::small_motion;
 use crate::util::tables::Table;
-use crate::util::{Dir, Files};
+use crate::util::{Dir, Files, RIGID, SCENE};
 
 /// A folder with ten steps of the small motion, every fifth written.
 fn moved() -> Dir {
@@ -22,6 +22,51 @@ fn moved() -> Dir {
         dir.run("out", &short);
         dir.snapshot()
     }))
+}
+
+/// Wrong: folders of other commands, and the file that shows all steps, would be called damaged.
+#[test]
+fn info_knows_folders_without_a_run_and_the_index_of_steps() {
+    let dir = Dir::with_scene(SCENE);
+    dir.run("out", &RIGID);
+    let info = |path: &str| dir.raceway(&["info", path]);
+    let index = info("out/run.vtkhdf");
+    assert_eq!(index.code, Some(0), "{}", index.stderr);
+    assert!(
+        index
+            .stdout
+            .contains("array      /VTKHDF/PointData/displacement float64 ["),
+        "{}",
+        index.stdout
+    );
+    let made = dir.raceway(&[&["stiffness", "scene.toml", "--out", "k"], &RIGID[..]].concat());
+    assert_eq!(made.code, Some(0), "{}", made.stderr);
+    let made = dir.raceway(&["export", "out", "--out", "e", "--to", "csv"]);
+    assert_eq!(made.code, Some(0), "{}", made.stderr);
+    std::fs::create_dir(dir.path("s")).unwrap();
+    dir.write("s/study.json", "{}");
+    dir.write("s/prices.md", "# Price list of effects");
+    for (folder, what) in [
+        ("k", "raceway stiffness"),
+        ("e", "raceway export"),
+        ("s", "raceway prices"),
+    ] {
+        let told = info(folder);
+        assert_eq!(told.code, Some(0), "{}", told.stderr);
+        assert!(
+            told.stdout.contains("holds") && told.stdout.contains(what),
+            "{}",
+            told.stdout
+        );
+    }
+    std::fs::create_dir(dir.path("empty")).unwrap();
+    let told = info("empty");
+    assert_eq!(told.code, Some(2));
+    assert!(
+        told.stderr.contains("empty holds no run: expected"),
+        "{}",
+        told.stderr
+    );
 }
 
 /// Wrong: a user could not tell what a folder or a file holds, or damage would be hidden.

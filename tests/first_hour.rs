@@ -111,6 +111,13 @@ fn init_replaces_nothing_and_takes_the_numbers_of_a_catalogue() {
         outcome.stderr
     );
     assert_eq!(dir.text("7208.toml"), "mine");
+    let outcome = dir.raceway(&["init", "7208", "--out", "own one.toml"]);
+    let next = "next: raceway mesh 'own one.toml', which needs Gmsh; then raceway run 'own one.toml'";
+    assert!(
+        outcome.stdout.contains(next),
+        "Wrong: no shell takes it: {}",
+        outcome.stdout
+    );
     let flags = [
         "--balls",
         "14",

@@ -81,6 +81,15 @@ fn a_bearing_with_rigid_rings_has_two_modes_per_ball_and_those_of_its_shaft() {
         "{}",
         outcome.stdout
     );
+    modes_are_not_resumed(&dir);
+}
+
+/// Wrong: `resume` would look for a scene file, which modes do not need.
+pub fn modes_are_not_resumed(dir: &Dir) {
+    let outcome = dir.raceway(&["resume", "out"]);
+    assert_eq!(outcome.code, Some(2), "{}", outcome.stderr);
+    let expected = "out holds results of a [modes] scene; only a run over time";
+    assert!(outcome.stderr.contains(expected), "{}", outcome.stderr);
 }
 
 /// If this failed, a check would not say what is computed.

@@ -17,7 +17,7 @@ fn a_file_that_is_not_the_programs_own_stays() {
     let outcome = report("scene.toml");
     assert_eq!(outcome.code, Some(2), "{}", outcome.stderr);
     let said = "error: scene.toml was not written by this command, so it is not written over; \
-                remove it or choose another --out";
+                move it away, or give another --out where the command has one";
     assert!(outcome.stderr.contains(said), "{}", outcome.stderr);
     assert_eq!(dir.text("scene.toml"), SCENE);
     // Its own page is replaced, a link is neither followed nor replaced.

@@ -3,6 +3,7 @@
 
 use std::sync::OnceLock;
 
+use crate::several::{pair, succeeds};
 use crate::util::tables::Table;
 use crate::util::{Dir, Files, RIGID, SCENE, assert_within, with_line};
 
@@ -331,4 +332,18 @@ fn what_cannot_be_plotted_is_said() {
         "there is no ball 40; balls are 0 to 17",
     );
     refused(&["sweep", "--step", "7"], "7");
+}
+
+/// Wrong: a ball or a step that is chosen of a list would be passed over in silence.
+#[test]
+fn figures_of_a_list_have_no_ball_and_no_step_to_choose() {
+    let dir = pair("[static]");
+    succeeds(&dir, &["run", "pair.toml", "--out", "out"]);
+    for choice in [["--ball", "99"], ["--step", "3"]] {
+        let refused = dir.raceway(&[&["plot", "out"], &choice[..]].concat());
+        assert_eq!(refused.code, Some(2), "{}", refused.stdout);
+        let expected =
+            "--ball and --step choose from the figures of one bearing: out has the results of several";
+        assert!(refused.stderr.contains(expected), "{}", refused.stderr);
+    }
 }

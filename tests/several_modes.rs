@@ -1,5 +1,6 @@
 //! Natural modes of several bearings on one shaft through the whole program: tables, step files, figures.
 
+use crate::modes::modes_are_not_resumed;
 use crate::several::{PAIR, flexible_pair, pair, succeeds, with_type};
 use crate::util::tables::{Table, number, summary};
 use crate::util::{Dir, assert_close};
@@ -58,6 +59,7 @@ fn a_list_has_its_natural_modes() {
     let largest = components.fold(0.0f64, |most, u| most.max(u.abs()));
     assert!((0.5..1.0 + 1e-9).contains(&largest), "{largest}");
     assert!(dir.path("out/front/step_000024.hdf").exists());
+    modes_are_not_resumed(&dir);
     succeeds(&dir, &["plot", "out"]);
     assert!(
         dir.path("out/figures/frequencies.svg").exists() && dir.path("out/figures/shaft_line.svg").exists()

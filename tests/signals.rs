@@ -296,3 +296,52 @@ fn rows_turns_apart_have_the_lines_of_all_rows() {
         assert!(of_few.2, "{of_few:?}");
     }
 }
+
+/// Wrong: a spectrum, that of an envelope and that of a density would stop each other: the second would say that the
+/// file of the first was not written by this command.
+#[test]
+fn kinds_of_spectra_have_files_of_their_own() {
+    let motion = "[speed]\ninner = \"1800 rpm\"\n\n[quasi_static]\nduration = \"10 ms\"\nstep = \"100 us\"\n";
+    let dir = Dir::with_scene(&with_line("[static]", "[static]", motion));
+    dir.run("out", &RIGID);
+    let band = ["--envelope", "500..4000"];
+    for more in [&[][..], &band, &["--density"], &band, &[]] {
+        let outcome = dir.raceway(&[&["spectrum", "out", "--probe", "x_m", "--upto", "900"], more].concat());
+        assert_eq!(outcome.code, Some(0), "{more:?}: {}", outcome.stderr);
+    }
+    for (kind, column) in [("", "amplitude_m"), ("_envelope", "envelope_amplitude_m")] {
+        let table = dir.text(&format!("out/spectrum_x{kind}.csv"));
+        assert!(table.starts_with(&format!("frequency_hz,{column}\n")), "{kind}");
+    }
+}
+
+/// Wrong: points of a sweep would be taken for seconds, by a spectrum and by its lines of the bearing.
+#[test]
+fn a_sweep_has_no_spectrum() {
+    let values: Vec<String> = (1..=20).map(|n| format!("\"{n}00 N\"")).collect();
+    let sweep = format!(
+        "[sweep]\nkey = \"effects.axial_force.value\"\nvalues = [{}]\n",
+        values.join(", ")
+    );
+    let dir = Dir::with_scene(&with_line("[static]", "[static]", &sweep));
+    dir.run("out", &RIGID);
+    for command in [
+        &["spectrum", "out", "--probe", "z_m"][..],
+        &["spall-length", "out", "--ring", "outer"],
+    ] {
+        let outcome = dir.raceway(command);
+        assert_eq!(outcome.code, Some(2), "{}", outcome.stdout);
+        let expected = "out has the results of [static] or [sweep], whose steps are no times; expected those of \
+                        [dynamic] or [quasi_static]";
+        assert!(outcome.stderr.contains(expected), "{}", outcome.stderr);
+    }
+    // Cycles from point to point are no times either.
+    let head = "step,time_s,effects.axial_force.value_n,g_pa\n";
+    let rows = (0..20).map(|n| format!("{n},{n}.0,{n}00.0,{}\n", n % 3));
+    dir.write("out/probes.csv", head.to_string() + &rows.collect::<String>());
+    let said = dir.raceway(&["cycles", "out"]).stdout;
+    assert!(
+        said.contains("1 stresses from point 0 to point 19 of the sweep"),
+        "{said}"
+    );
+}

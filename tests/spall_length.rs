@@ -110,6 +110,105 @@ fn where_there_is_no_double_impulse_none_is_told() {
     }
 }
 
+/// A 33 mm bearing at 600 rpm with a spall of the outer ring at 40 deg, 20 um deep, which ball 1 meets at 7.4 ms.
+const SHALLOW: &str = r#"
+[bearing]
+bore_diameter = "33 mm"
+outside_diameter = "58.5 mm"
+width = "11 mm"
+balls = 13
+ball_diameter = "7.2 mm"
+pitch_diameter = "45.9 mm"
+contact_angle = "22 deg"
+inner_curvature_ratio = 0.525
+outer_curvature_ratio = 0.535
+[materials]
+rings = "bearing steel"
+balls = "silicon nitride"
+[contact]
+mode = "rigid"
+[inner]
+flexible = false
+[outer]
+flexible = false
+[shaft]
+x = "free"
+y = "free"
+z = "free"
+tilt_x = "locked"
+tilt_y = "locked"
+load_point = "0 mm"
+mass = "1.3 kg"
+[effects.axial_force]
+value = "1200 N"
+[effects.radial_force]
+value = "350 N"
+direction = "30 deg"
+[speed]
+inner = "600 rpm"
+[effects.contact_damping]
+coefficient = "2e-1 N s/mm"
+full_approach = "1 um"
+[[profiles.spall]]
+ring = "outer"
+azimuth = "40 deg"
+groove_angle = "22 deg"
+length = "0.9 mm"
+width = "3 mm"
+depth = "20 um"
+edge = "0.05 mm"
+[dynamic]
+duration = "12 ms"
+step = "10 us"
+output_every = 5000
+"#;
+
+/// Wrong: ball 7, on the other side, which the blow of ball 1 unloads by a quarter, would be said to pass the spall; or
+/// a ball would be said to meet the far edge while it has no load. A ball that flies tells no length here.
+#[test]
+fn the_ball_is_the_one_that_loses_its_load() {
+    let firm = ("12 ms", &["1"][..]);
+    let loose = ("27.5 ms", &["1", "0"][..]);
+    for (length, load, damping, (duration, balls)) in [(0.9, 1200, "2e-1", firm), (1.3, 600, "5e-2", loose)] {
+        let dir = Dir::empty();
+        let scene = SHALLOW.replace("0.9 mm", &format!("{length} mm"));
+        let scene = scene.replace("1200 N", &format!("{load} N"));
+        dir.write(
+            "scene.toml",
+            scene.replace("2e-1", damping).replace("12 ms", duration),
+        );
+        dir.run("out", &[]);
+        let text = said(&dir, "outer");
+        assert!(
+            text.contains("every ball flies over the spall: its length is not to be told"),
+            "{text}"
+        );
+        let table = dir.text("out/spall_lengths.csv");
+        let rows: Vec<Vec<&str>> = table
+            .lines()
+            .skip(1)
+            .map(|line| line.split(',').collect())
+            .collect();
+        assert_eq!(
+            rows.iter().map(|row| row[0]).collect::<Vec<_>>(),
+            balls,
+            "{table}"
+        );
+        for row in rows {
+            let azimuth: f64 = row[3].parse().unwrap();
+            assert!((azimuth.to_degrees() - 40.0).abs() < 0.5, "{table}");
+            // No length, or one that is too large, as is said of a ball that flies.
+            assert!(
+                row[4]
+                    .parse()
+                    .map_or(row[4].is_empty(), |told: f64| told > 1e-3 * length),
+                "{table}"
+            );
+            assert_eq!(row[5], "1", "{table}");
+        }
+    }
+}
+
 /// Wrong: a length would come of steps that skip the spall, of a shaft that cannot move, or of a mass of nothing.
 #[test]
 fn lengths_that_cannot_be_told_are_refused() {

@@ -25,7 +25,7 @@ fn study(dir: &Dir, arguments: &[&str]) -> crate::util::Outcome {
 }
 
 /// A folder where the study was run; once for all tests that look at it.
-fn studied() -> Dir {
+pub fn studied() -> Dir {
     static FILES: OnceLock<Files> = OnceLock::new();
     Dir::with_files(FILES.get_or_init(|| {
         let dir = inputs();
@@ -35,7 +35,7 @@ fn studied() -> Dir {
     }))
 }
 
-fn table(dir: &Dir) -> Value {
+pub fn table(dir: &Dir) -> Value {
     serde_json::from_str(&dir.text("out/study.json")).unwrap()
 }
 

@@ -1,5 +1,6 @@
 //! Studies of scenes whose files change.
 
+use crate::study::{studied, table};
 use crate::util::delivered::coarse;
 use crate::util::{Dir, Outcome};
 
@@ -33,5 +34,23 @@ fn a_study_refuses_points_of_files_that_have_changed() {
             .contains("was run with other contents of the file of outer.mesh than study.toml asks for now"),
         "{}",
         changed.stderr
+    );
+}
+
+/// Wrong: the command would name meshes from where `advise` was called, and a run looks from the folder of its scene.
+#[test]
+fn advice_names_meshes_from_the_root() {
+    let dir = studied();
+    let mut json = table(&dir);
+    for point in json["points"].as_array_mut().unwrap() {
+        point["set"] = serde_json::json!(["inner.mesh = \"{out}/meshes/a.msh\""]);
+    }
+    dir.write("out/study.json", json.to_string());
+    let outcome = dir.raceway(&["advise", "out", "--error", "0.1%", "--quantity", "history"]);
+    let mesh = outcome.stdout.split("inner.mesh = \"").nth(1);
+    let mesh = mesh.unwrap_or_else(|| panic!("no mesh in {}", outcome.stdout));
+    assert!(
+        mesh.starts_with('/') && mesh.contains("/out/meshes/a.msh\"'"),
+        "{mesh}"
     );
 }

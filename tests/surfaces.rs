@@ -73,10 +73,10 @@ fn an_outer_spall_shows_lines_at_bpfo() {
     let again = dir.raceway(&["spectrum", "out", "--probe", "z_m", "--envelope", "1000..4000"]);
     assert_eq!(again.code, Some(0), "{}", again.stderr);
     assert!(
-        dir.text("out/spectrum_z.csv")
+        dir.text("out/spectrum_z_envelope.csv")
             .starts_with("frequency_hz,envelope_amplitude_m\n")
     );
-    let figure = dir.text("out/figures/spectrum_z.svg");
+    let figure = dir.text("out/figures/spectrum_z_envelope.svg");
     assert!(figure.contains("BPFO") && figure.contains("Envelope of z from 1000 Hz to 4000 Hz"));
     // The ledger has the work of profiles, and closes.
     let energy = Table::read(&dir, "out/energy.csv");

@@ -367,6 +367,10 @@ fn a_sweep_stops_at_a_signal_and_names_the_points_that_are_left() {
     assert_eq!(resumed.code, Some(2));
     let expected = "out holds results of a [sweep] scene; only a run over time";
     assert!(resumed.stderr.contains(expected), "{}", resumed.stderr);
+    let refused = dir.raceway(&["life", "out"]);
+    assert_eq!(refused.code, Some(2));
+    let expected = "the points left are computed by the same command with --points and another --out";
+    assert!(refused.stderr.contains(expected), "{}", refused.stderr);
     // As told: the others.
     let part = format!("{solved}-{}", solved + 1);
     dir.run("rest", &[&["--points", part.as_str()], &RIGID[..]].concat());

@@ -12,10 +12,13 @@ use comm::print;
 use mesh::{Mesh, MeshError};
 use results::answer;
 use results::bodies::where_bodies_are;
+use results::campbell::CAMPBELL_TABLE;
 use results::disk::size;
 use results::failure::Failure;
 use results::integrity::doubts;
+use results::load_matrix::MATRIX_FILE;
 use results::reduction::{REDUCTION, REDUCTION_FILE};
+use results::stiffness::STIFFNESS_FILE;
 use results::summary::{SUMMARY_FILE, bodies_shown_in};
 
 /// How closely the steps of a folder are looked at.
@@ -126,7 +129,59 @@ pub struct Inspected {
     pub damaged: Vec<String>,
 }
 
+/// Files that tell a run, beside its steps.
+const OF_RUNS: [&str; 4] = ["mesh.hdf", SUMMARY_FILE, "run.log", "run.hdf.series"];
+/// Files that tell what another command wrote. A folder of prices is one of a study, too.
+const OF_OTHERS: [(&str, &str); 8] = [
+    (STIFFNESS_FILE, "a stiffness, from raceway stiffness"),
+    (
+        CAMPBELL_TABLE,
+        "natural frequencies over the speed, from raceway campbell",
+    ),
+    (heat::HEAT_FILE, "temperatures, from raceway heat"),
+    (MATRIX_FILE, "forces from strains, from raceway load-matrix"),
+    (
+        "prices.md",
+        "prices of effects, from raceway prices; runs are in points",
+    ),
+    ("study.json", "a study, from raceway study; runs are in points"),
+    ("life.json", "a life, from raceway life"),
+    ("run.pvd", EXPORT),
+];
+const EXPORT: &str = "steps for other programs, from raceway export";
+
+/// What a folder without a run holds; None where there is a run, or nothing that is known.
+fn without_run(dir: &Path) -> Result<Option<&'static str>, Failure> {
+    let has = |name: &str| dir.join(name).exists();
+    if OF_RUNS.into_iter().any(has)
+        || !committed_steps(dir)?.is_empty()
+        || !checkpoint::packs(dir)?.is_empty()
+    {
+        return Ok(None);
+    }
+    if let Some((_, what)) = OF_OTHERS.into_iter().find(|(name, _)| has(name)) {
+        return Ok(Some(what));
+    }
+    let entries = std::fs::read_dir(dir).with_context(|| dir.display().to_string())?;
+    let mut names = entries.flatten().map(|entry| entry.file_name());
+    if names.any(|name| name.to_string_lossy().starts_with("step_")) {
+        return Ok(Some(EXPORT));
+    }
+    Err(anyhow!(
+        "{} holds no run: expected step files, {}",
+        dir.display(),
+        OF_RUNS.join(", ")
+    )
+    .into())
+}
+
 fn folder(dir: &Path, depth: Inspection) -> Result<(), Failure> {
+    if let Some(what) = without_run(dir)? {
+        line("folder", &dir.display().to_string());
+        line("holds", what);
+        answer::add("holds", what);
+        return Ok(());
+    }
     let Inspected { steps, damaged } = inspect(dir, depth)?;
     answer::add_results(dir);
     answer::add("steps", steps);

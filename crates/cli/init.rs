@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, anyhow};
 use clap::Args;
 use comm::print;
-use input::{ANGLE, LENGTH, Quantity};
+use input::{ANGLE, LENGTH, Quantity, shell_word};
 use results::answer;
 use results::failure::Failure;
 use scene::{MeshFiles, Scene, StarterRequest, file_name, scene_text};
@@ -89,7 +89,7 @@ pub fn init(request: &Init) -> Result<(), Failure> {
     }
     print::line(format_args!(
         "next: raceway mesh {0}, which needs Gmsh; then raceway run {0}",
-        path.display()
+        shell_word(path.display())
     ));
     Ok(())
 }

@@ -5,6 +5,7 @@
 use std::path::Path;
 
 use anyhow::anyhow;
+use input::shell_word;
 use results::failure::{Failure, agree, of_all};
 use results::motion_fields::RestartState;
 use results::stop::Stop;
@@ -200,7 +201,7 @@ fn stopped(course: &mut impl OverInstants, reason: &str) -> Failure {
         "{reason}; the state after step {n} of {}, t = {:.6e} s, is saved: go on with raceway resume {}",
         course.due().last,
         course.time(n),
-        course.dir().display()
+        shell_word(course.dir().display())
     ))
 }
 

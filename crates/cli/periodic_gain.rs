@@ -5,6 +5,7 @@
 
 use contact::Side;
 use dynamics::{Model, RingModel};
+use input::shell_word;
 use mesh::{REVOLVED_TOLERANCE, is_revolved};
 use scene::Scene;
 
@@ -71,7 +72,7 @@ pub fn advice(scene: &Scene, model: &Model) -> Vec<String> {
             FREE_MEMORY.at(n),
             PERIODIC_STEP.at(n),
             PERIODIC_MEMORY.at(n),
-            body.mesh.display(),
+            shell_word(body.mesh.display()),
             SECTORS_PER_BALL * model.geometry.n_balls
         ))
     };

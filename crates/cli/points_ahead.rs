@@ -69,7 +69,7 @@ pub struct PointsAhead<'s, 'scope, P: FoundPoint, M> {
     /// Points solved or under way.
     ahead: usize,
     found: BTreeMap<u64, thread::Result<PointAnswer<P, M>>>,
-    answers: (Sender<NumberedAnswer<P, M>>, Receiver<NumberedAnswer<P, M>>),
+    answers: Answers<P, M>,
     /// Set once no more points are asked for.
     has_ended: Arc<AtomicBool>,
 }
@@ -88,6 +88,8 @@ impl<P: FoundPoint, M> PointsAhead<'_, '_, P, M> {
 }
 
 type NumberedAnswer<P, M> = (u64, thread::Result<PointAnswer<P, M>>);
+
+type Answers<P, M> = (Sender<NumberedAnswer<P, M>>, Receiver<NumberedAnswer<P, M>>);
 
 impl<'s, 'scope, P: FoundPoint, M: Send> PointsAhead<'s, 'scope, P, M> {
     /// Those of a run from its beginning, or of one that goes on.

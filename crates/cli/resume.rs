@@ -13,6 +13,7 @@ use anyhow::{Context, anyhow};
 use checkpoint::{StepRecord, has_state, newest_step, read_about, read_any_step, step_file_name};
 use clap::Args;
 use comm::print;
+use input::shell_word;
 use results::about::{MAY_CHANGE, OVERRIDES, SCENE_FILE, WARNINGS, require_named_files, scene_file};
 use results::failure::{Failure, agree};
 use results::integrity::doubts;
@@ -141,7 +142,7 @@ fn choose_step(dir: &Path, step: Option<u64>) -> Result<u64, Failure> {
             "{} holds no committed step: the run ended before its first one; start it again with raceway run SCENE \
              --out {}",
             dir.display(),
-            dir.display()
+            shell_word(dir.display())
         )
         .into());
     }
@@ -158,7 +159,7 @@ fn choose_step(dir: &Path, step: Option<u64>) -> Result<u64, Failure> {
     if !steps.contains(&step) && checkpoint::all_steps(dir)?.contains(&step) {
         return Err(anyhow!(
             "step {step} is in a pack; raceway pack {} --undo makes files of the packed steps again",
-            dir.display()
+            shell_word(dir.display())
         )
         .into());
     }
@@ -243,7 +244,10 @@ fn scene_of(
     let path = match (&request.scene, about.get(SCENE_FILE)) {
         (Some(path), _) => path.clone(),
         (None, Some(path)) => scene_file(&request.dir, path),
-        (None, None) => return Err(anyhow!("step {} does not say where its scene is", record.step).into()),
+        (None, None) => {
+            let step = request.dir.join(step_file_name(record.step));
+            return Err(OverTime::without_scene_file(&step, &request.dir));
+        }
     };
     if request.scene.is_some() || path.exists() {
         if !request.stored_scene {

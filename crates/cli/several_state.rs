@@ -204,7 +204,7 @@ fn read_step(
     let path = match (changes.scene, about.get(SCENE_FILE)) {
         (Some(path), _) => path.to_path_buf(),
         (None, Some(path)) => scene_file(&folders[0], path),
-        (None, None) => return Err(anyhow!("{} does not say where its scene is", first.display()).into()),
+        (None, None) => return Err(OverTime::without_scene_file(&first, dir)),
     };
     let before: Vec<String> = about
         .get(OVERRIDES)

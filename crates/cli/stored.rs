@@ -11,6 +11,7 @@ use results::answer;
 use results::failure::Failure;
 use results::reduction::take_arrays;
 use results::state_arrays::{self, Arrays};
+use results::summary::read_summary;
 use results::watch::Watch;
 use scene::{Analysis, Dynamic, QuasiStatic};
 
@@ -37,12 +38,25 @@ impl OverTime {
             Analysis::Sweep(_) => "[sweep]",
             Analysis::Modes(_) => "[modes]",
         };
-        Err(anyhow!(
+        Err(OverTime::none_of(kind, dir))
+    }
+
+    /// Why a step that does not say where its scene is cannot be gone on from: steps of modes do not.
+    pub fn without_scene_file(step: &Path, dir: &Path) -> Failure {
+        let summary = read_summary(dir).unwrap_or_default();
+        match summary["analysis"] == "modes" {
+            true => OverTime::none_of("[modes]", dir),
+            false => anyhow!("{} does not say where its scene is", step.display()).into(),
+        }
+    }
+
+    fn none_of(kind: &str, dir: &Path) -> Failure {
+        anyhow!(
             "{} holds results of a {kind} scene; only a run over time, a scene with [dynamic] or [quasi_static], can \
              be resumed, run the scene again",
             dir.display()
         )
-        .into())
+        .into()
     }
 
     /// The table of the scene that says how long it goes.

@@ -6,6 +6,7 @@
 
 use std::path::Path;
 
+use hdf5::dataset::Layout;
 use hdf5::types::{FixedAscii, FloatSize, TypeDescriptor, VarLenUnicode};
 use hdf5::{Dataset, File, Group, Location};
 
@@ -393,6 +394,16 @@ impl<'a> CheckedFile<'a> {
         let stored = stored.map_err(CheckpointError::hdf("read", self.path))?;
         self.require_size(dataset, &stored)?;
         Ok(stored.shape())
+    }
+
+    /// Shape of a data set that is only listed. One that shows those of other files has no bytes of its own.
+    pub fn listed_shape(&self, dataset: &str) -> Result<Vec<usize>, CheckpointError> {
+        let stored = self.file.dataset(below(dataset));
+        let stored = stored.map_err(CheckpointError::hdf("read", self.path))?;
+        match stored.layout() {
+            Layout::Virtual => Ok(stored.shape()),
+            _ => self.shape(dataset),
+        }
     }
 
     /// The only value of a data set with one element.

@@ -6,6 +6,7 @@ use std::path::Path;
 use crate::dataset::CheckedFile;
 use crate::error::CheckpointError;
 use crate::mesh_file::{MESH_FILE, MESH_HASH};
+use crate::names::INDEX_FILE;
 use crate::seal::{verify_seal, verify_structure};
 use crate::step::{POINT_DATA, STEP, read_about, read_contents, run_of_file};
 
@@ -77,7 +78,11 @@ pub fn describe(path: &Path) -> Result<FileDescription, CheckpointError> {
             arrays: arrays(&file, &paths)?,
             step: None,
             scene: None,
-            about: read_about(path)?,
+            // The index of all steps has no texts: they are those of the steps.
+            about: match path.file_name().is_some_and(|name| name == INDEX_FILE) {
+                true => BTreeMap::new(),
+                false => read_about(path)?,
+            },
             damage,
         });
     }
@@ -94,7 +99,7 @@ pub fn describe(path: &Path) -> Result<FileDescription, CheckpointError> {
 
 fn arrays(file: &CheckedFile, paths: &[String]) -> Result<Vec<ArrayDescription>, CheckpointError> {
     let array = |path: &String| {
-        let (shape, kind) = (file.shape(path)?, file.descriptor(path)?);
+        let (shape, kind) = (file.listed_shape(path)?, file.descriptor(path)?);
         let n = shape.iter().fold(1, |n: usize, &extent| n.saturating_mul(extent));
         Ok(ArrayDescription {
             path: path.clone(),

@@ -16,6 +16,7 @@ mod expansion;
 mod problems;
 pub mod schedule;
 mod schedule_table;
+mod shell;
 mod temperature;
 pub mod units;
 
@@ -24,6 +25,7 @@ pub use expansion::Expansion;
 pub use problems::Problems;
 pub use schedule::Schedule;
 pub use schedule_table::{Clock, RawSchedule, check_schedule, require_growing, schedule_of};
+pub use shell::shell_word;
 pub use temperature::Temperature;
 pub use units::{
     ACCELERATION, ANGLE, ANGULAR_SPEED, AnyQuantity, DAMPING, DENSITY, DYNAMIC_VISCOSITY, Dimension, FORCE,

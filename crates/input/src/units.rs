@@ -69,7 +69,7 @@ impl<const KIND: usize> Quantity<KIND> {
 
     /// Reads a quantity where other words are possible too: `expected` ends the messages.
     pub fn parse_expecting(text: &str, expected: &str) -> Result<Self, UnitError> {
-        let any = parse(text, expected)?;
+        let any = parse(text, expected, Some(Self::KIND.dimension))?;
         require_dimension(text, any.dimension, Self::KIND, expected.to_string())?;
         Ok(Quantity {
             si: any.si,
@@ -156,20 +156,22 @@ impl FromStr for AnyQuantity {
     type Err = UnitError;
 
     fn from_str(text: &str) -> Result<Self, UnitError> {
-        parse(text, "a quantity such as \"2 kN\"")
+        parse(text, "a quantity such as \"2 kN\"", None)
     }
 }
 
 /// Size of the named unit in SI: 1e-3 for `mm` and [`LENGTH`].
 pub fn parse_unit(text: &str, kind: &Kind) -> Result<f64, UnitError> {
     let expected = format!("a unit of {} such as \"{}\"", kind.noun(), kind.example_unit());
-    let unit = expression::parse(text.trim()).map_err(|e| e.into_error(text, &expected))?;
+    let unit = text.trim();
+    let wanted = (unit, Some(kind.dimension));
+    let unit = expression::parse(unit).map_err(|e| e.into_error(text, &expected, wanted))?;
     require_dimension(text, unit.dimension, kind, expected)?;
     Ok(unit.apply(&Decimal::ONE))
 }
 
-/// Reads number and unit; `expected` ends the messages.
-fn parse(text: &str, expected: &str) -> Result<AnyQuantity, UnitError> {
+/// Reads number and unit; `expected` ends the messages, and the dimension is that of what they suggest.
+fn parse(text: &str, expected: &str, wanted: Option<Dimension>) -> Result<AnyQuantity, UnitError> {
     let owned = || (text.to_string(), expected.to_string());
     let trimmed = text.trim();
     let Some((decimal, rest)) = Decimal::split(trimmed) else {
@@ -191,7 +193,8 @@ fn parse(text: &str, expected: &str) -> Result<AnyQuantity, UnitError> {
             expected,
         });
     }
-    let unit = expression::parse(rest.trim()).map_err(|e| e.into_error(text, expected))?;
+    let unit = rest.trim();
+    let unit = expression::parse(unit).map_err(|e| e.into_error(text, expected, (unit, wanted)))?;
     let si = unit.apply(&decimal);
     if !si.is_finite() {
         let (text, expected) = owned();

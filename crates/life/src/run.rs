@@ -379,6 +379,12 @@ fn require_finished(dir: &Path) -> anyhow::Result<()> {
         serde_json::from_str(&text).with_context(|| format!("{} is damaged", path.display()))?;
     let status = summary["status"].as_str().unwrap_or("unknown");
     ensure!(
+        status == "finished" || summary["analysis"] != "sweep",
+        "{} holds a sweep that has stopped ({status}); the points left are computed by the same command with --points \
+         and another --out, or run it again",
+        dir.display()
+    );
+    ensure!(
         status == "finished",
         "{} holds a run that has not finished ({status}); resume it, or run it again",
         dir.display()

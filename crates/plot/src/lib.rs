@@ -71,7 +71,13 @@ pub struct Figures {
 /// Writes the figures of a run as SVG and PNG. A figure that cannot be made does not stop the others; the command then
 /// ends with an error.
 pub fn plot(request: &Plot) -> Result<(), Failure> {
-    let mut figures = figures(&request.dir, &request.choice)?;
+    let (dir, choice) = (&request.dir, &request.choice);
+    if choice.ball != 0 || choice.step.is_some() {
+        require_one_bearing(dir).map_err(|error| {
+            error.context("--ball and --step choose from the figures of one bearing".into())
+        })?;
+    }
+    let mut figures = figures(dir, choice)?;
     warn_of_doubts(&request.dir)?;
     say_later(&request.dir);
     let out = request.out.clone().unwrap_or_else(|| request.dir.join("figures"));

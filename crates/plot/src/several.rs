@@ -56,12 +56,19 @@ fn line(shaft: &Table, bearings: &Table) -> anyhow::Result<Figure> {
         axis,
         MICROMETRE.axis("displacement"),
     );
-    for name in ["x", "y", "z"] {
-        let column = format!("{name}_m");
-        let line = pick(shaft, &rows, &column, MICROMETRE)?;
-        if line.iter().all(|u| u.abs() < NOTHING) {
+    let of = |name| Ok((name, pick(shaft, &rows, &format!("{name}_m"), MICROMETRE)?));
+    let lines = ["x", "y", "z"]
+        .map(of)
+        .into_iter()
+        .collect::<anyhow::Result<Vec<_>>>()?;
+    let is_nothing = |line: &[f64]| line.iter().all(|u| u.abs() < NOTHING);
+    // A shaft that stands has its lines, too.
+    let stands = lines.iter().all(|(_, line)| is_nothing(line));
+    for (name, line) in lines {
+        if is_nothing(&line) && !stands {
             continue;
         }
+        let column = format!("{name}_m");
         figure = figure.series(Series::line(name, points(&z, &line)));
         let own = pick(bearings, &places, &column, MICROMETRE)?;
         figure = figure.series(Series::marks(
@@ -159,6 +166,22 @@ mod tests {
         std::fs::write(dir.path().join(SHAFT_TABLE), table).unwrap();
         let table = Table::read(dir.path(), SHAFT_TABLE).unwrap().unwrap();
         range(&table).unwrap().map(|figure| figure.svg().unwrap())
+    }
+
+    /// Wrong: a figure of a correct run could not be made: an equal pair without load across leaves its shaft in place.
+    #[test]
+    fn the_line_of_a_shaft_that_stands_is_drawn() {
+        let table = |text: &str| {
+            let dir = tempfile::tempdir().unwrap();
+            std::fs::write(dir.path().join(SHAFT_TABLE), text).unwrap();
+            Table::read(dir.path(), SHAFT_TABLE).unwrap().unwrap()
+        };
+        let rows = "step,time_s,position_m,x_m,y_m,z_m\n0,0.0,0.0,0.0,-0.0,0.0\n0,0.0,0.1,0.0,0.0,1e-16\n";
+        let svg = line(&table(rows), &table(rows)).unwrap().svg().unwrap();
+        assert!(svg.contains("y at the bearings"), "{svg}");
+        let moved = rows.replace("1e-16", "1e-6");
+        let svg = line(&table(&moved), &table(rows)).unwrap().svg().unwrap();
+        assert!(!svg.contains("y at the bearings"), "{svg}");
     }
 
     /// Wrong: the figure would show the end for the whole time, or be drawn of one instant, a sweep, or a shaft that

@@ -32,7 +32,8 @@ pub fn require_own(path: &Path, is_own: impl Fn(&[u8]) -> bool) -> anyhow::Resul
     };
     if !data.is_file() {
         return Err(anyhow!(
-            "{} is no plain file, so it is not written over; remove it or choose another --out",
+            "{} is no plain file, so it is not written over; move it away, or give another --out \
+             where the command has one",
             path.display()
         ));
     }
@@ -41,7 +42,8 @@ pub fn require_own(path: &Path, is_own: impl Fn(&[u8]) -> bool) -> anyhow::Resul
         return Ok(());
     }
     Err(anyhow!(
-        "{} was not written by this command, so it is not written over; remove it or choose another --out",
+        "{} was not written by this command, so it is not written over; move it away, or give another --out \
+             where the command has one",
         path.display()
     ))
 }

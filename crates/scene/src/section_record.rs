@@ -5,6 +5,7 @@
 //! `[inner.section]` or dimensions say something else is refused with the values and the command that builds its mesh.
 
 use contact::Side;
+use input::shell_word;
 use mesh::MeshError;
 
 use crate::error::BuildError;
@@ -70,7 +71,8 @@ pub fn unrecorded(
 pub fn build_command(scene: &Scene) -> String {
     let set = |argument: &String| format!(" --set '{argument}'");
     let overrides: String = scene.overrides.iter().map(set).collect();
-    format!("raceway mesh {}{overrides} --force", scene.path.display())
+    let file = shell_word(scene.path.display());
+    format!("raceway mesh {file}{overrides} --force")
 }
 
 /// A misfit of groove and mesh with the command that builds the mesh, where the scene describes it.

@@ -12,7 +12,7 @@ mod spall_length;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
-use anyhow::{Context, ensure};
+use anyhow::{Context, bail, ensure};
 use checkpoint::{all_steps, read_any_step};
 use clap::Args;
 use comm::print;
@@ -20,7 +20,7 @@ use figure::{Axis, DataPoint, Figure, Series};
 use results::failure::Failure;
 use results::integrity::warn_of_doubts;
 use results::whole::{make_folder, require_own_picture, write, write_picture};
-use scene::{MeshFiles, Scene};
+use scene::{Analysis, MeshFiles, Scene};
 
 use fourier::LineSpectrum;
 use lines::{Line, lines};
@@ -132,8 +132,10 @@ pub fn spectrum(request: &SpectrumCommand) -> Result<(), Failure> {
     let dir = &request.dir;
     require_folder(dir)?;
     plot::require_one_bearing(dir)?;
+    let scene = scene_of(dir)?;
+    require_motion(dir, &scene)?;
     let signal = request.signal()?;
-    let mut marks = lines(dir, &scene_of(dir)?, signal.span)?;
+    let mut marks = lines(dir, &scene, signal.span)?;
     let named = request.transform(&signal)?;
     marks.iter_mut().for_each(|line| {
         line.frequency /= named.over.hertz;
@@ -171,6 +173,20 @@ fn require_folder(dir: &Path) -> anyhow::Result<()> {
     Ok(())
 }
 
+/// Fails for a run whose steps are no times.
+fn require_motion(dir: &Path, scene: &Scene) -> anyhow::Result<()> {
+    let table = match &scene.analysis {
+        Analysis::Dynamic(_) | Analysis::QuasiStatic(_) => return Ok(()),
+        // Steps of a sweep have the scene of their point.
+        Analysis::Static | Analysis::Sweep(_) => "[static] or [sweep]",
+        Analysis::Modes(_) => "[modes]",
+    };
+    bail!(
+        "{} has the results of {table}, whose steps are no times; expected those of [dynamic] or [quasi_static]",
+        dir.display()
+    )
+}
+
 /// The scene of the run in `dir`.
 pub fn scene_of(dir: &Path) -> Result<Scene, Failure> {
     let steps = all_steps(dir)?;
@@ -206,9 +222,9 @@ impl SpectrumCommand {
             let over = if self.orders.is_some() { "_orders" } else { "" };
             format!("spectrum_{name}{more}{over}")
         };
-        let linear = |column: String, title: String, axis: Axis| Titled {
+        let linear = |file: String, column: String, title: String, axis: Axis| Titled {
             spectrum: samples.limited(fourier::amplitudes(&samples.values, samples.rate)),
-            file: file(""),
+            file,
             column,
             title,
             axis,
@@ -218,6 +234,7 @@ impl SpectrumCommand {
         };
         if let Some(Band(band)) = self.envelope {
             return Ok(linear(
+                file("_envelope"),
                 format!("envelope_amplitude_{ending}"),
                 format!("Envelope of {what} from {} Hz to {} Hz", band[0], band[1]),
                 unit.axis("amplitude of the envelope"),
@@ -237,6 +254,7 @@ impl SpectrumCommand {
             });
         }
         Ok(linear(
+            file(""),
             format!("amplitude_{ending}"),
             format!("Amplitudes of {what}"),
             unit.axis("amplitude"),

@@ -16,19 +16,19 @@
 //! w is how deep the ball stands in the spall. **Entry**: it sinks by the parabola k v^2 t^2/2, so that the root of w
 //! grows with time; the line through it meets zero at the edge. **Impact**: the kink half-way is the deepest place.
 //! (N. Sawalhi and R. B. Randall, Mech. Syst. Signal Process. 25 (2011) 846, have the double impulse.) A ball that
-//! flies meets the far edge later, and where it is the shaft does not feel.
+//! flies meets the far edge later, and where it is the shaft does not feel. **Ball**: that whose own forces fall most.
 //!
 //! Validity: rings whose own motion is small beside that of balls and shaft; a mass that moves along x, y or z; steps
 //! that resolve the passage. Cost: a few hundred operations per step and ball.
 
 use std::f64::consts::{PI, TAU};
+use std::ops::Range;
 
 use contact::{BySide, Side};
 
 /// Time that counts as undisturbed before a passage, over that from ball to ball.
 const QUIET: f64 = 1.0 / 40.0;
-/// Time from the first sign of a passage after which the ball is told, and by which one looks back for its entry.
-const NAMED: f64 = 1.0 / 100.0;
+/// Time from the first sign of a passage by which one looks back for its entry.
 const BACK: f64 = 1.0 / 70.0;
 /// Time that a passage takes at most.
 const LONGEST: f64 = 0.6;
@@ -43,6 +43,8 @@ const ROOT_TO: f64 = 0.6;
 const OUT: f64 = 0.8;
 /// Share of its load below which a ball flies, within the error of it; also its least depth ([`DEEPER`]).
 const FLIES: f64 = 0.05;
+/// Share of its load that a ball has left at most by its own forces where the shaft says that it flies.
+const LITTLE: f64 = 0.5;
 /// Time over which the ball's acceleration is differenced, s: a tenth of the period between its raceways.
 const BEND: f64 = 3e-6;
 /// Depth of a passage over that to which a ball sinks in a spall of its length, at most; the inverse is the least of a
@@ -105,12 +107,12 @@ pub struct SpallPassage {
     pub ball: usize,
     /// When it enters, s.
     pub entry: f64,
-    /// When it meets the far edge, s.
+    /// When it meets the far edge, s; of a ball whose length is not told when it has some load again.
     pub impact: f64,
     /// Azimuth of the middle of the spall on its ring at the start of the run, rad.
     pub azimuth: f64,
     /// Length of the spall, m: pi f (D_m^2 - D^2 cos^2 a)/D_m times the time between, f the speed of the ring in the
-    /// frame of the other.
+    /// frame of the other. No number where the ball flies and the shaft does not tell the impact.
     pub length: f64,
     /// Whether the ball flew: the length is then too large.
     pub flies: bool,
@@ -134,23 +136,20 @@ pub fn passages(record: &ShaftRecord, known: &PassedBearing) -> Vec<SpallPassage
         let until = (at + record.samples(known, LONGEST)).min(record.shaft.len() - 2);
         let before = record.before(known, at);
         let first = record.pushes(known, &before, at);
-        if !before.loads().zip(&first).any(|(load, push)| *push > SIGN * load) {
+        if !loads(before.balls)
+            .zip(&first)
+            .any(|(load, push)| *push > SIGN * load)
+        {
             at += 1;
             continue;
         }
-        let step_of = |time: f64| ((time - record.start) / record.step).round() as usize;
-        let named = |step: usize| largest(&record.pushes(known, &before, step));
-        // At first what is left of an earlier blow may be largest, at the impact it is what the ball lacks.
-        let ball = named((at + record.samples(known, NAMED)).min(until));
-        let first = record.passage(known, ball, at, until);
-        let again = first.map(|passage| named(step_of(passage.impact)));
-        let passage = match again {
-            Some(other) if other != ball => record.passage(known, other, at, until),
-            _ => first,
-        };
-        match passage {
+        let from = record.from(known, at);
+        let ball = record.unloaded(from, at + record.samples(known, QUIET));
+        let told = record.passage(known, ball, at, until);
+        let passage = told.filter(|passage| record.is_seen(passage, from));
+        match passage.or_else(|| record.flight(known, ball, at, until)) {
             Some(passage) => {
-                at = at.max(step_of(passage.entry)) + record.samples(known, LONGEST);
+                at = at.max(record.step_of(passage.entry)) + record.samples(known, LONGEST);
                 found.push(passage);
             }
             None => at += record.samples(known, QUIET),
@@ -166,19 +165,17 @@ impl PassedBearing {
     }
 }
 
-impl Before<'_> {
-    /// Loads of the balls, N; infinite of those that have too little to lack any.
-    fn loads(&self) -> impl Iterator<Item = f64> {
-        let most = self.balls.iter().map(|ball| ball.forces[0]).fold(0.0, f64::max);
-        let loads = self.balls.iter().map(|ball| ball.forces[0]);
-        loads.map(move |load| {
-            if load > LEAST_LOAD * most {
-                load
-            } else {
-                f64::INFINITY
-            }
-        })
-    }
+/// Loads of the balls, N; infinite of those that have too little to lack any.
+fn loads(balls: &[BallAt]) -> impl Iterator<Item = f64> {
+    let most = balls.iter().map(|ball| ball.forces[0]).fold(0.0, f64::max);
+    let loads = balls.iter().map(|ball| ball.forces[0]);
+    loads.map(move |load| {
+        if load > LEAST_LOAD * most {
+            load
+        } else {
+            f64::INFINITY
+        }
+    })
 }
 
 impl ShaftRecord {
@@ -260,9 +257,73 @@ impl ShaftRecord {
         before.normals.iter().map(push).collect()
     }
 
+    /// The step before a first sign from which on a passage is looked at.
+    fn from(&self, known: &PassedBearing, sign: usize) -> usize {
+        sign.saturating_sub(self.samples(known, BACK)).max(1)
+    }
+
+    /// Share of its force at the step `from` that a ball has at another, of the contact with less.
+    fn left(&self, ball: usize, from: usize, step: usize) -> f64 {
+        let [before, now] = [from, step].map(|step| self.balls[step][ball].forces);
+        (now[0] / before[0]).min(now[1] / before[1])
+    }
+
+    /// The ball whose own forces fall most between two steps, of those that have some to lose.
+    fn unloaded(&self, from: usize, until: usize) -> usize {
+        let least = |(ball, load): (usize, f64)| match load.is_finite() {
+            true => self.least_left(ball, from, from..until),
+            false => f64::INFINITY,
+        };
+        let lefts = loads(&self.balls[from]).enumerate().map(least);
+        let ball = lefts.enumerate().min_by(|a, b| a.1.total_cmp(&b.1));
+        ball.map_or(0, |(ball, _)| ball)
+    }
+
+    /// Least share that a ball has left of its force at the step `from` in a range of steps.
+    fn least_left(&self, ball: usize, from: usize, steps: Range<usize>) -> f64 {
+        let steps = steps.start..steps.end.min(self.balls.len());
+        steps
+            .map(|step| self.left(ball, from, step))
+            .fold(f64::INFINITY, f64::min)
+    }
+
+    /// Whether a ball's own forces are those of its passage: one that flies has little left, and is back at the impact.
+    fn is_seen(&self, passage: &SpallPassage, from: usize) -> bool {
+        let [entry, impact] = [passage.entry, passage.impact].map(|time| self.step_of(time));
+        let end = (impact + (KINK * (impact - entry) as f64) as usize).min(self.balls.len() - 1);
+        let is_back = (impact..=end).any(|step| self.left(passage.ball, from, step) > FLIES);
+        is_back && (!passage.flies || self.least_left(passage.ball, from, entry..end) < LITTLE)
+    }
+
+    /// The flight of a ball soon after a first sign, by its own forces, where no passage is told; its length is no
+    /// number. None where it keeps its load, or has not got it back at the end.
+    fn flight(&self, known: &PassedBearing, ball: usize, sign: usize, until: usize) -> Option<SpallPassage> {
+        let from = self.from(known, sign);
+        let is_off = |step: &usize| self.left(ball, from, *step) < FLIES;
+        let off = (sign..sign + self.samples(known, QUIET))
+            .take_while(|step| *step < until)
+            .find(is_off)?;
+        let on = (off..until).find(|step| !is_off(step))?;
+        let [entry, impact] = [off, on].map(|step| self.start + self.step * step as f64);
+        let middle = 0.5 * (self.balls[off][ball].azimuth + self.balls[on][ball].azimuth);
+        let turned = middle - known.ring * (0.5 * (entry + impact) - self.start);
+        Some(SpallPassage {
+            ball,
+            entry,
+            impact,
+            azimuth: (turned + PI).rem_euclid(TAU) - PI,
+            length: f64::NAN,
+            flies: true,
+        })
+    }
+
+    fn step_of(&self, time: f64) -> usize {
+        ((time - self.start) / self.step).round() as usize
+    }
+
     /// The passage of a ball with its first sign at a step; None where it is none, or goes on at the end.
     fn passage(&self, known: &PassedBearing, ball: usize, sign: usize, until: usize) -> Option<SpallPassage> {
-        let from = sign.saturating_sub(self.samples(known, BACK)).max(1);
+        let from = self.from(known, sign);
         let before = self.before(known, from);
         let at = before.balls[ball];
         let force = at.forces[0];
@@ -348,11 +409,6 @@ impl ShaftRecord {
         };
         shares.iter().zip(along).map(depth).collect()
     }
-}
-
-/// The number of the largest value.
-fn largest(values: &[f64]) -> usize {
-    (0..values.len()).fold(0, |most, i| if values[i] > values[most] { i } else { most })
 }
 
 /// The deepest place before the ball is on its way out, and that where it is; None: it does not go in, or not out

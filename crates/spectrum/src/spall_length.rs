@@ -17,7 +17,7 @@ use scene::{Scene, ShaftMotion, geometry};
 
 use crate::passages::{BallAt, LEAST_QUIET, PassedBearing, ShaftRecord, SpallPassage, passages};
 use crate::signal::equal_rate;
-use crate::{require_folder, scene_of};
+use crate::{require_folder, require_motion, scene_of};
 
 /// What the command line asks for.
 #[derive(Debug, Args)]
@@ -43,6 +43,7 @@ pub fn spall_length(command: &SpallLengthCommand) -> Result<(), Failure> {
     require_folder(dir)?;
     plot::require_one_bearing(dir)?;
     let scene = scene_of(dir)?;
+    require_motion(dir, &scene)?;
     let side = Side::BOTH.into_iter().find(|side| side.name() == command.ring);
     let side = side.expect("the command line knows both names");
     let record = record(dir, &scene)?;
@@ -52,14 +53,13 @@ pub fn spall_length(command: &SpallLengthCommand) -> Result<(), Failure> {
     let found = passages(&record, &known);
     let head = "ball,entry_s,impact_s,azimuth_rad,length_m,flies\n";
     let row = |p: &SpallPassage| {
-        let (entry, impact) = (p.entry, p.impact);
-        format!(
-            "{},{entry:?},{impact:?},{:?},{:?},{}\n",
-            p.ball,
-            p.azimuth,
-            p.length,
-            u8::from(p.flies)
-        )
+        let length = if p.length.is_nan() {
+            String::new()
+        } else {
+            format!("{:?}", p.length)
+        };
+        let (entry, impact, azimuth, flies) = (p.entry, p.impact, p.azimuth, u8::from(p.flies));
+        format!("{},{entry:?},{impact:?},{azimuth:?},{length},{flies}\n", p.ball)
     };
     let table = head.to_string() + &found.iter().map(row).collect::<String>();
     write(&dir.join(TABLE), table.as_bytes(), |old| {
@@ -73,6 +73,15 @@ pub fn spall_length(command: &SpallLengthCommand) -> Result<(), Failure> {
 
 fn say_passage(passage: &SpallPassage) {
     let (entry, impact) = (1e3 * passage.entry, 1e3 * passage.impact);
+    if passage.length.is_nan() {
+        print::line(format_args!(
+            "ball {:>3} loses its load at {entry:.4} ms and has some again at {impact:.4} ms, at {:.2} deg: it flies, \
+             and the shaft does not tell how far",
+            passage.ball,
+            passage.azimuth.to_degrees()
+        ));
+        return;
+    }
     print::line(format_args!(
         "ball {:>3} enters at {entry:.4} ms, meets the far edge at {impact:.4} ms, has left by {:.4} ms: {:.3} mm at \
          {:.2} deg{}",
@@ -97,7 +106,8 @@ fn say_all(found: &[SpallPassage], record: &ShaftRecord, known: &PassedBearing) 
         Vec::new(),
         |most, group| if group.len() > most.len() { group } else { most },
     );
-    let mut lengths: Vec<f64> = group.iter().filter(|p| !p.flies).map(|p| p.length).collect();
+    let told = group.iter().filter(|p| !p.flies);
+    let mut lengths: Vec<f64> = told.clone().map(|p| p.length).collect();
     lengths.sort_by(f64::total_cmp);
     if found.is_empty() {
         print::line(format_args!(
@@ -108,17 +118,17 @@ fn say_all(found: &[SpallPassage], record: &ShaftRecord, known: &PassedBearing) 
             "the passages lie at places of their own on the {} ring: no length of one spall; look at the other ring",
             known.side.name()
         ));
-    } else if lengths.is_empty() {
-        print::line(format_args!(
-            "every ball flies over the spall: its length is not to be told"
-        ));
-    } else {
-        let step = 1e3 * found[0].length / (found[0].impact - found[0].entry) * record.step;
+    } else if let Some(one) = told.min_by(|a, b| a.entry.total_cmp(&b.entry)) {
+        let step = 1e3 * one.length / (one.impact - one.entry) * record.step;
         print::line(format_args!(
             "length {:.3} mm, median of {} passages of {}; a step is {step:.3} mm",
             500.0 * (lengths[lengths.len() / 2] + lengths[(lengths.len() - 1) / 2]),
             lengths.len(),
             found.len()
+        ));
+    } else {
+        print::line(format_args!(
+            "every ball flies over the spall: its length is not to be told"
         ));
     }
 }

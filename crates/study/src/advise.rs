@@ -2,9 +2,10 @@
 
 use std::path::{Path, PathBuf};
 
-use anyhow::{anyhow, bail};
+use anyhow::{Context, anyhow, bail};
 use clap::Args;
 use comm::print;
+use input::shell_word;
 use results::failure::Failure;
 
 use super::format::CostKind;
@@ -35,9 +36,11 @@ pub fn advise(question: &Question) -> Result<(), Failure> {
         question.study.clone()
     };
     let mut report = StudyReport::load(&path)?;
-    let folder = path.parent().filter(|folder| *folder != Path::new(""));
+    // Paths of a scene start at its folder.
+    let whole = std::path::absolute(&path).with_context(|| path.display().to_string())?;
+    let folder = whole.parent().unwrap_or(Path::new("."));
     for point in &mut report.points {
-        point.set = arguments(&point.set, folder.unwrap_or(Path::new(".")));
+        point.set = arguments(&point.set, folder);
     }
     let kind = question.cost.unwrap_or(report.cost);
     let names = asked(&report, question.quantity.as_deref(), &path)?;
@@ -112,8 +115,9 @@ fn advise_one(report: &StudyReport, names: &[String], error: f64, kind: CostKind
     };
     print::line(format_args!("{title}: {}", settings(point)));
     for name in names {
-        let result = &point.results[name];
-        print::line(format_args!("    {}", reached(name, result)));
+        let unit = report.quantities.iter().find(|q| q.name == *name);
+        let unit = unit.map_or("1", |quantity| &quantity.unit);
+        print::line(format_args!("    {}", reached(name, unit, &point.results[name])));
     }
     if let Some(cost) = &point.cost {
         let mark = if cost.disturbed.is_empty() {
@@ -131,7 +135,7 @@ fn advise_one(report: &StudyReport, names: &[String], error: f64, kind: CostKind
     }
     print::line(format_args!(
         "    raceway run {}{}",
-        report.scene,
+        shell_word(&report.scene),
         set_arguments(point)
     ));
     true
@@ -153,21 +157,41 @@ fn settings(point: &PointReport) -> String {
     parts.join(", ")
 }
 
-fn reached(name: &str, result: &ResultReport) -> String {
+fn reached(name: &str, unit: &str, result: &ResultReport) -> String {
     let (error, uncertainty) = (result.error.unwrap_or(0.0), result.uncertainty.unwrap_or(0.0));
     let plus = if uncertainty > 0.0 {
         format!(", uncertainty {}", percent(uncertainty))
     } else {
         String::new()
     };
-    format!("{name}: {:.6}, error {}{plus}", result.value, percent(error))
+    // One is no unit.
+    let unit = if unit == "1" {
+        String::new()
+    } else {
+        format!(" {unit}")
+    };
+    format!(
+        "{name}: {}{unit}, error {}{plus}",
+        digits(result.value),
+        percent(error)
+    )
+}
+
+/// A number with six significant digits.
+fn digits(x: f64) -> String {
+    let rounded: f64 = format!("{x:.5e}").parse().unwrap_or(x);
+    if rounded == 0.0 || (1e-3..1e6).contains(&rounded.abs()) {
+        rounded.to_string()
+    } else {
+        format!("{rounded:e}")
+    }
 }
 
 fn set_arguments(point: &PointReport) -> String {
     point
         .set
         .iter()
-        .map(|s| format!(" --set '{}'", s.replace('\'', r"'\''")))
+        .map(|argument| format!(" --set {}", shell_word(argument)))
         .collect()
 }
 
@@ -199,6 +223,25 @@ fn parse_error(text: &str) -> Result<f64, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// Wrong: a displacement of 8.1 um would be shown as 0.000008, and nobody would know of what.
+    #[test]
+    fn values_have_significant_digits_and_their_unit() {
+        let result = ResultReport {
+            value: 8.123456e-6,
+            reference: None,
+            error: Some(0.01),
+            uncertainty: None,
+            is_reference: false,
+            pareto: true,
+        };
+        assert_eq!(reached("z", "m", &result), "z: 8.12346e-6 m, error 1.000 %");
+        assert_eq!(
+            [digits(1234.5678), digits(0.0), digits(-0.25)],
+            ["1234.57", "0", "-0.25"]
+        );
+        assert_eq!(reached("share", "1", &result), "share: 8.12346e-6, error 1.000 %");
+    }
 
     /// Wrong: an error would be taken for a hundred times itself.
     #[test]

@@ -3,7 +3,7 @@
 use super::error::UnitError;
 
 use super::symbol;
-use super::unit::Unit;
+use super::unit::{Dimension, Unit};
 
 /// Deepest nesting of parentheses: more is a mistake, and unbounded recursion would overflow the stack.
 const MAX_DEPTH: usize = 8;
@@ -18,8 +18,9 @@ pub enum ExpressionError {
 }
 
 impl ExpressionError {
-    /// Adds the whole text and what was expected.
-    pub fn into_error(self, text: &str, expected: &str) -> UnitError {
+    /// Adds the whole text and what was expected; `unit` is its unit with the dimension that it should have, if one is
+    /// known.
+    pub fn into_error(self, text: &str, expected: &str, unit: (&str, Option<Dimension>)) -> UnitError {
         let (text, expected) = (text.to_string(), expected.to_string());
         match self {
             ExpressionError::Malformed(reason) => UnitError::Malformed {
@@ -28,8 +29,10 @@ impl ExpressionError {
                 expected,
             },
             ExpressionError::Unknown(symbol) => {
-                let suggestion =
-                    symbol::suggest(&symbol).map_or(String::new(), |s| format!(" (did you mean \"{s}\"?)"));
+                // A factor of a unit may have any dimension.
+                let wanted = unit.1.filter(|_| unit.0 == symbol);
+                let suggestion = symbol::suggest(&symbol, wanted)
+                    .map_or(String::new(), |s| format!(" (did you mean \"{s}\"?)"));
                 UnitError::UnknownUnit {
                     text,
                     symbol,
@@ -111,6 +114,7 @@ impl Parser<'_> {
     /// A symbol, the number 1 or a parenthesis, with an optional power.
     fn factor(&mut self) -> Result<Unit, ExpressionError> {
         self.skip_spaces();
+        let start = self.at;
         let base = match self.peek() {
             None => return Err(malformed("it ends where a unit is needed")),
             Some('(') => self.parenthesis()?,
@@ -121,7 +125,7 @@ impl Parser<'_> {
             Some(c) if is_symbol_char(c) => self.symbol()?,
             Some(c) => return Err(malformed(format!("unexpected '{c}'"))),
         };
-        Ok(match self.power()? {
+        Ok(match self.power(start)? {
             Some(power) => base.raised(power),
             None => base,
         })
@@ -151,14 +155,18 @@ impl Parser<'_> {
         symbol::find(&name).ok_or(ExpressionError::Unknown(name))
     }
 
-    /// `^1.5`, `^(10/9)`, `3`, `-2`, `³`, `⁻²`; `None` when no power follows.
-    fn power(&mut self) -> Result<Option<f64>, ExpressionError> {
+    /// `^1.5`, `^(10/9)`, `3`, `-2`, `³`, `⁻²`; `None` when no power follows. What is raised begins at `start`.
+    fn power(&mut self, start: usize) -> Result<Option<f64>, ExpressionError> {
         match self.peek() {
             Some('^') => {
                 self.at += 1;
                 self.caret_power().map(Some)
             }
-            Some(c) if c == '-' || c.is_ascii_digit() => self.take_number(|c| c.is_ascii_digit()).map(Some),
+            Some(c) if c == '-' || c.is_ascii_digit() => {
+                let (base, power) = (self.at, self.take_number(|c| c.is_ascii_digit())?);
+                self.require_whole_power(start, base)?;
+                Ok(Some(power))
+            }
             Some(c) if superscript(c).is_some() => {
                 let mut digits = String::new();
                 while let Some(c) = self.peek().and_then(superscript) {
@@ -169,6 +177,21 @@ impl Parser<'_> {
             }
             _ => Ok(None),
         }
+    }
+
+    /// Fails where a power that follows without `^`, from `base` on, goes on behind a decimal point.
+    fn require_whole_power(&self, start: usize, base: usize) -> Result<(), ExpressionError> {
+        let digits = self.chars[self.at..].iter().skip(1);
+        let n = digits.take_while(|c| c.is_ascii_digit()).count();
+        if self.peek() != Some('.') || n == 0 {
+            return Ok(());
+        }
+        let text = |from: usize, to: usize| self.chars[from..to].iter().collect::<String>();
+        let power = text(base, self.at + 1 + n);
+        Err(malformed(format!(
+            "a power with a decimal point needs '^', write \"{}^{power}\"",
+            text(start, base)
+        )))
     }
 
     fn caret_power(&mut self) -> Result<f64, ExpressionError> {

@@ -100,7 +100,7 @@ pub fn find(name: &str) -> Option<Unit> {
 }
 
 /// Words for units, and units without a symbol here: what to write.
-const WORDS: [(&str, &str); 17] = [
+const WORDS: [(&str, &str); 19] = [
     ("degree", "deg"),
     ("degrees", "deg"),
     ("grad", "deg"),
@@ -118,11 +118,13 @@ const WORDS: [(&str, &str); 17] = [
     ("r", "rev"),
     ("upm", "rpm"),
     ("RPM", "rpm"),
+    ("cP", "mPa s"),
+    ("cSt", "mm2/s"),
 ];
 
 /// The unit that was probably meant: a word for it, two units run together (`Nm`), other capitals (`KN`), or one letter
-/// off.
-pub fn suggest(name: &str) -> Option<String> {
+/// off, of the dimension that is wanted if one is given.
+pub fn suggest(name: &str, wanted: Option<Dimension>) -> Option<String> {
     if let Some((_, unit)) = WORDS.iter().find(|(word, _)| *word == name) {
         return Some(unit.to_string());
     }
@@ -151,6 +153,7 @@ pub fn suggest(name: &str) -> Option<String> {
     let near = || {
         candidates
             .iter()
+            .filter(|c| wanted.is_none_or(|wanted| find(c).is_some_and(|unit| unit.dimension == wanted)))
             .find(|c| c.len() > 2 && strsim::osa_distance(c, name) == 1)
     };
     same_letters

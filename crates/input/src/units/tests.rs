@@ -105,6 +105,24 @@ fn error_of<const K: usize>(text: &str) -> String {
     text.parse::<Quantity<K>>().expect_err(text).to_string()
 }
 
+/// Wrong: a pressure would be suggested for a viscosity, and a missing '^' be called a product.
+#[test]
+fn hints_are_of_what_is_expected() {
+    let text = error_of::<DYNAMIC_VISCOSITY>("40 cP");
+    assert!(text.contains("(did you mean \"mPa s\"?)"), "{text}");
+    let text = error_of::<VISCOSITY>("40 cSt");
+    assert!(text.contains("(did you mean \"mm2/s\"?)"), "{text}");
+    let (length, stress) = (error_of::<LENGTH>("40 MPb"), error_of::<STRESS>("40 MPb"));
+    assert!(
+        stress.contains("did you mean \"MPa\"") && !length.contains("did you mean"),
+        "{length}"
+    );
+    let text = error_of::<HERTZ_STIFFNESS>("9.31e5 N/mm1.5");
+    let hint = "cannot be read: a power with a decimal point needs '^', write \"mm^1.5\"; ";
+    assert!(text.contains(hint), "{text}");
+    assert_eq!("9 m2.s".parse::<AnyQuantity>().unwrap().si, 9.0);
+}
+
 /// If this failed, a wrong unit would be accepted or its message would not say what was typed and what is
 /// right.
 #[test]

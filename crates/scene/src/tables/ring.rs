@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use input::{KINDS, LENGTH, Problems, Quantity, parse_unit};
+use input::{KINDS, LENGTH, Problems, Quantity, parse_unit, shell_word};
 use serde::Deserialize;
 
 use super::bearing::Bearing;
@@ -246,7 +246,7 @@ impl RawRing {
         };
         format!(
             "build it with \"raceway mesh {}\"{same}, which needs Gmsh, or ",
-            context.scene.display()
+            shell_word(context.scene.display())
         )
     }
 
