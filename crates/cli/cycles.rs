@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, anyhow};
 use clap::Args;
 use comm::print;
-use plot::{Results, Steps};
+use plot::swept_column;
 use results::failure::Failure;
 use results::integrity::warn_of_doubts;
 use results::rainflow::{rainflow, turning_points};
@@ -90,9 +90,9 @@ pub fn cycles(request: &Cycles) -> Result<(), Failure> {
     }
     write(dir, RANGES, &RANGE_COLUMNS, ranges)?;
     write(dir, CYCLES, &CYCLE_COLUMNS, counted)?;
-    let span = match Results::read(dir)?.steps {
-        Steps::Sweep(_) => format!("point {first} to point {last} of the sweep"),
-        _ => format!("{first} s to {last} s"),
+    let span = match swept_column(dir)? {
+        Some(_) => format!("point {first} to point {last} of the sweep"),
+        None => format!("{first} s to {last} s"),
     };
     print::line(format_args!(
         "{} stresses from {span}: {RANGES} and {CYCLES} in {}",

@@ -13,6 +13,9 @@ use results::failure::Failure;
 use results::summary::{bodies_shown_in, read_summary};
 use results::whole::{make_output_folder, write_new};
 
+/// File of the times of all steps.
+pub const TIMES: &str = "run.pvd";
+
 /// What the command line asks for.
 #[derive(Debug, Args)]
 pub struct Export {
@@ -128,7 +131,7 @@ pub fn export(request: &Export) -> Result<(), Failure> {
         names.push((name, record.time));
     }
     if request.to == ExportForm::Vtu {
-        write_new(&out.join("run.pvd"), |file| vtu::write_collection(file, &names))?;
+        write_new(&out.join(TIMES), |file| vtu::write_collection(file, &names))?;
     }
     request.say_written(names.len());
     Ok(())

@@ -5,10 +5,11 @@ use std::path::Path;
 
 use anyhow::{Context, anyhow};
 use checkpoint::{
-    CheckpointError, FileDescription, committed_steps, describe, has_state, open_regular, read_mesh,
-    read_step, read_step_time, read_table, require_run, run_of, step_file_name,
+    CheckpointError, FileDescription, MESH_FILE, SERIES_FILE, committed_steps, describe, has_state,
+    open_regular, read_mesh, read_step, read_step_time, read_table, require_run, run_of, step_file_name,
 };
 use comm::print;
+use life::LIFE_FILE;
 use mesh::{Mesh, MeshError};
 use results::answer;
 use results::bodies::where_bodies_are;
@@ -17,9 +18,14 @@ use results::disk::size;
 use results::failure::Failure;
 use results::integrity::doubts;
 use results::load_matrix::MATRIX_FILE;
+use results::log::LOG_FILE;
 use results::reduction::{REDUCTION, REDUCTION_FILE};
 use results::stiffness::STIFFNESS_FILE;
 use results::summary::{SUMMARY_FILE, bodies_shown_in};
+use study::STUDY_FILE;
+use study::prices::PRICES_FILE;
+
+use crate::export::TIMES;
 
 /// How closely the steps of a folder are looked at.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -130,7 +136,7 @@ pub struct Inspected {
 }
 
 /// Files that tell a run, beside its steps.
-const OF_RUNS: [&str; 4] = ["mesh.hdf", SUMMARY_FILE, "run.log", "run.hdf.series"];
+const OF_RUNS: [&str; 4] = [MESH_FILE, SUMMARY_FILE, LOG_FILE, SERIES_FILE];
 /// Files that tell what another command wrote. A folder of prices is one of a study, too.
 const OF_OTHERS: [(&str, &str); 8] = [
     (STIFFNESS_FILE, "a stiffness, from raceway stiffness"),
@@ -141,12 +147,12 @@ const OF_OTHERS: [(&str, &str); 8] = [
     (heat::HEAT_FILE, "temperatures, from raceway heat"),
     (MATRIX_FILE, "forces from strains, from raceway load-matrix"),
     (
-        "prices.md",
+        PRICES_FILE,
         "prices of effects, from raceway prices; runs are in points",
     ),
-    ("study.json", "a study, from raceway study; runs are in points"),
-    ("life.json", "a life, from raceway life"),
-    ("run.pvd", EXPORT),
+    (STUDY_FILE, "a study, from raceway study; runs are in points"),
+    (LIFE_FILE, "a life, from raceway life"),
+    (TIMES, EXPORT),
 ];
 const EXPORT: &str = "steps for other programs, from raceway export";
 

@@ -205,8 +205,8 @@ fn stopped(course: &mut impl OverInstants, reason: &str) -> Failure {
     ))
 }
 
-/// Says what there is of a sweep that stops, with so many points solved from its point `first` to `last`; `others` is
-/// how to have the others. Points are written as they are solved.
+/// Says what there is of a sweep that stops, with so many points solved from its point `first` to `last`, and how to
+/// have the others. Points are written as they are solved.
 pub fn stopped_sweep(reason: &str, (first, solved, last): (u64, u64, u64), dir: &Path) -> Failure {
     let (total, next) = (last + 1 - first, first + solved);
     Failure::Stopped(match solved {

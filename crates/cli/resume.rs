@@ -16,6 +16,7 @@ use comm::print;
 use input::shell_word;
 use results::about::{MAY_CHANGE, OVERRIDES, SCENE_FILE, WARNINGS, require_named_files, scene_file};
 use results::failure::{Failure, agree};
+use results::folder::start_again;
 use results::integrity::doubts;
 use results::summary::read_summary;
 use scene::{MeshFiles, Scene, difference};
@@ -138,13 +139,7 @@ fn read(request: &ResumeRequest, step: u64) -> Result<Read, Failure> {
 /// The step asked for, or the newest whole one with a state, with a warning for every newer one that is damaged.
 fn choose_step(dir: &Path, step: Option<u64>) -> Result<u64, Failure> {
     if checkpoint::is_unfinished_start(dir)? {
-        return Err(anyhow!(
-            "{} holds no committed step: the run ended before its first one; start it again with raceway run SCENE \
-             --out {}",
-            dir.display(),
-            shell_word(dir.display())
-        )
-        .into());
+        return Err(anyhow!("{} holds no committed step: {}", dir.display(), start_again(dir)).into());
     }
     let Some(step) = step else {
         let mut damaged = 0;

@@ -13,10 +13,7 @@ use results::export::{csv, integration_points, vtu};
 use results::failure::Failure;
 use results::whole::{make_folder, make_output_folder, require_free, write_new};
 
-use crate::export::{Export, ExportForm, require_same_mesh};
-
-/// File of the times of all steps.
-const TIMES: &str = "run.pvd";
+use crate::export::{Export, ExportForm, TIMES, require_same_mesh};
 
 /// Writes the steps asked for; existing files are not touched.
 pub fn export(request: &Export) -> Result<(), Failure> {

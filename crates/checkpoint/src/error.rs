@@ -270,4 +270,4 @@ impl FileKind {
 }
 
 /// Name of the mesh in a result folder.
-pub(crate) const MESH_FILE: &str = "mesh.hdf";
+pub const MESH_FILE: &str = "mesh.hdf";

@@ -59,7 +59,7 @@ pub use body::{Body, CellKind, point_ranges};
 pub use cells::{CellFields, IntegrationPointStress};
 pub use checksum::file_checksum;
 pub use describe::{ArrayDescription, FileDescription, describe};
-pub use error::CheckpointError;
+pub use error::{CheckpointError, MESH_FILE};
 pub use folder::{
     begin_anew, clear_unfinished_start, committed_steps, is_unfinished_start, new_superseded_folder,
     newest_step, require_run, run_of,
@@ -69,7 +69,7 @@ pub use growing::{FileStamp, GrowingFile, Stamps, start_of};
 pub use index::{Views, rebuild_index};
 pub use lock::{FolderLock, open_lock};
 pub use mesh_file::{MeshFile, read_mesh};
-pub use names::step_file_name;
+pub use names::{INDEX_FILE, SERIES_FILE, step_file_name};
 pub use output::{Output, Resumed};
 pub use pack::{pack_steps, unpack_steps};
 pub use places::{all_steps, packs, point_field_names, read_any_step};

@@ -25,7 +25,7 @@ pub use expansion::Expansion;
 pub use problems::Problems;
 pub use schedule::Schedule;
 pub use schedule_table::{Clock, RawSchedule, check_schedule, require_growing, schedule_of};
-pub use shell::shell_word;
+pub use shell::{shell_quoted, shell_word};
 pub use temperature::Temperature;
 pub use units::{
     ACCELERATION, ANGLE, ANGULAR_SPEED, AnyQuantity, DAMPING, DENSITY, DYNAMIC_VISCOSITY, Dimension, FORCE,

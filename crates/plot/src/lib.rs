@@ -46,7 +46,7 @@ use results::whole::{make_output_folder, require_own_picture, write_picture};
 pub use choice::Choice;
 pub use named::Named;
 pub use quantity::AxisUnit;
-pub use run::{Results, Steps};
+pub use run::{Results, Steps, swept_column};
 
 /// What the command line asks for.
 #[derive(Debug, Args)]

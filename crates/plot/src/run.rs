@@ -2,11 +2,14 @@
 
 use std::path::{Path, PathBuf};
 
-use anyhow::anyhow;
+use anyhow::{Context, anyhow};
 use figure::Axis;
 
 use super::quantity::{self, MILLISECOND};
 use results::table::Table;
+
+/// Forces of balls, a row for each at every step.
+const BALLS: &str = "balls.csv";
 
 /// Tables of a run and what its steps are.
 pub struct Results {
@@ -45,7 +48,7 @@ impl Results {
             ));
         }
         let [balls, shaft, energy, probes] =
-            ["balls.csv", "shaft.csv", "energy.csv", "probes.csv"].map(|name| Table::read(dir, name));
+            [BALLS, "shaft.csv", "energy.csv", "probes.csv"].map(|name| Table::read(dir, name));
         let balls = balls?;
         Ok(Results {
             dir: dir.to_path_buf(),
@@ -101,10 +104,26 @@ pub fn readable(key: &str) -> String {
     key.replace(['_', '.'], " ")
 }
 
+/// The column of the swept value of the results in `dir`, by the head of a table; None where no steps are load cases.
+pub fn swept_column(dir: &Path) -> anyhow::Result<Option<String>> {
+    let path = dir.join(BALLS);
+    if !path.exists() {
+        return Ok(None);
+    }
+    let read = || csv::Reader::from_path(&path)?.headers().cloned();
+    let head = read().with_context(|| format!("cannot read {}", path.display()))?;
+    Ok(swept(head.get(2).unwrap_or_default()))
+}
+
+/// The swept value stands before the balls.
+fn swept(third: &str) -> Option<String> {
+    let is_swept = third != "ball" && third != "azimuth_rad";
+    is_swept.then(|| third.to_string())
+}
+
 fn steps(balls: &Table) -> anyhow::Result<Steps> {
-    let third = balls.names().get(2).map_or("", String::as_str);
-    if third != "ball" && third != "azimuth_rad" {
-        return Ok(Steps::Sweep(third.to_string()));
+    if let Some(column) = swept(balls.names().get(2).map_or("", String::as_str)) {
+        return Ok(Steps::Sweep(column));
     }
     let steps = balls.column("step")?;
     Ok(match steps.iter().any(|step| *step != steps[0]) {

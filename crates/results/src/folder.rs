@@ -6,8 +6,12 @@ use std::os::unix::ffi::OsStringExt;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, anyhow};
-use checkpoint::{CheckpointError, FolderLock, clear_unfinished_start, is_unfinished_start};
+use checkpoint::{
+    CheckpointError, FolderLock, INDEX_FILE, MESH_FILE, SERIES_FILE, clear_unfinished_start,
+    is_unfinished_start,
+};
 use comm::{Communicator, print};
+use input::shell_word;
 
 use crate::failure::{Failure, agree};
 use crate::reduction::REDUCTION_FILE;
@@ -31,9 +35,9 @@ const RESULT_FILES: [&str; 14] = [
     "modes.csv",
     SEAT_TABLES[0],
     SEAT_TABLES[1],
-    "mesh.hdf",
-    "run.hdf.series",
-    "run.vtkhdf",
+    MESH_FILE,
+    SERIES_FILE,
+    INDEX_FILE,
 ];
 
 /// Where the results of `scene` go: `out`, which must not hold results, or the next free `results/NAME`; what a run
@@ -121,12 +125,20 @@ pub fn say_later(dir: &Path) {
     }
 }
 
+/// How to have a run again that ended in a folder before its first step.
+pub fn start_again(dir: &Path) -> String {
+    format!(
+        "the run ended before its first one; start it again with raceway run SCENE --out {}",
+        shell_word(dir.display())
+    )
+}
+
 /// The folder of the last run that was given the default name of `dir` after it.
 fn later(dir: &Path) -> Option<PathBuf> {
     let (stem, number) = numbered(dir)?;
     let following = (number + 1..MAX_FOLDERS).map(|next| with_number(dir, stem, next));
     // A run of the scene that is going on has no summary yet.
-    let holds_run = |dir: &PathBuf| dir.join(SUMMARY_FILE).exists() || dir.join("mesh.hdf").exists();
+    let holds_run = |dir: &PathBuf| dir.join(SUMMARY_FILE).exists() || dir.join(MESH_FILE).exists();
     following.take_while(|dir| dir.exists()).filter(holds_run).last()
 }
 

@@ -7,12 +7,12 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, anyhow};
-use checkpoint::{CheckpointError, FolderLock, begin_anew, is_unfinished_start, lock};
+use checkpoint::{CheckpointError, FolderLock, MESH_FILE, begin_anew, is_unfinished_start, lock};
 use comm::{Communicator, print};
 use scene::{SeveralScene, names_of_bearings};
 
 use crate::failure::Failure;
-use crate::folder::remove_outdated;
+use crate::folder::{remove_outdated, start_again};
 use crate::several::{BALLS_TABLE, BEARINGS_TABLE, ENERGY_TABLE, SCENE_TEXT, SHAFT_TABLE};
 use crate::summary::SUMMARY_FILE;
 use crate::whole::{make_asked_folder, require_free, write_new};
@@ -85,7 +85,7 @@ pub fn is_free_again(scene: &Path, dir: &Path) -> Result<bool, CheckpointError> 
 /// Whether a folder holds only what a run of a list left that ended before its first step was whole in all bearings.
 pub fn is_unfinished(dir: &Path) -> Result<bool, CheckpointError> {
     let holds = |name: &str| dir.join(name).exists();
-    if holds(SUMMARY_FILE) || holds("mesh.hdf") {
+    if holds(SUMMARY_FILE) || holds(MESH_FILE) {
         return Ok(false);
     }
     if holds(STARTING) {
@@ -114,10 +114,9 @@ pub fn ended_early(dir: &Path) -> Failure {
         }
     }
     Failure::User(anyhow!(
-        "{} holds no step that is whole in all bearings: the run ended before its first one; start it again with \
-         raceway run SCENE --out {}",
+        "{} holds no step that is whole in all bearings: {}",
         dir.display(),
-        dir.display()
+        start_again(dir)
     ))
 }
 

@@ -5,7 +5,7 @@
 //! `[inner.section]` or dimensions say something else is refused with the values and the command that builds its mesh.
 
 use contact::Side;
-use input::shell_word;
+use input::{shell_quoted, shell_word};
 use mesh::MeshError;
 
 use crate::error::BuildError;
@@ -69,7 +69,7 @@ pub fn unrecorded(
 
 /// The command that builds the meshes of a scene anew.
 pub fn build_command(scene: &Scene) -> String {
-    let set = |argument: &String| format!(" --set '{argument}'");
+    let set = |argument: &String| format!(" --set {}", shell_quoted(argument));
     let overrides: String = scene.overrides.iter().map(set).collect();
     let file = shell_word(scene.path.display());
     format!("raceway mesh {file}{overrides} --force")

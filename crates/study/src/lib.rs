@@ -40,6 +40,7 @@ pub use self::format::{Cell, CostKind, Meshes, Take};
 pub use self::plan::{AxisValue, Plan, Point, Source, StudyAxis, StudyQuantity, grid};
 pub use self::record::write_whole;
 pub use self::report::{PointReport, StudyReport};
+pub use self::table::JSON as STUDY_FILE;
 
 /// What is asked.
 #[derive(Debug, Args)]

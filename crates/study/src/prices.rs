@@ -24,7 +24,7 @@ const BASE: &str = "as it is";
 /// Its axis.
 const EFFECTS: &str = "effects";
 /// The table for documents.
-const FILE: &str = "prices.md";
+pub const PRICES_FILE: &str = "prices.md";
 
 /// What is asked.
 #[derive(Debug, Args)]
@@ -55,7 +55,7 @@ pub fn prices(request: &PricesRequest) -> Result<(), Failure> {
     let report = crate::run_all(&plan, &out, request.jobs)?;
     let text = table(&report);
     print::line(format_args!("{text}"));
-    crate::write_whole(&out.join(FILE), &text)?;
+    crate::write_whole(&out.join(PRICES_FILE), &text)?;
     print::line(format_args!("results: {}", out.display()));
     Ok(())
 }
