@@ -1,7 +1,5 @@
 //! The beam shaft against closed forms: statics, natural frequencies, gyroscopic moments.
 
-mod near;
-
 use assembly::newton::{Mount, Problem, Scales, settle};
 use assembly::stiffness::LinearAssembly;
 use assembly::support::LinearSupport;
@@ -10,7 +8,7 @@ use assembly::{Assembly, BeamSection, BeamShaft, Orientation, PointMass, Seating
 use dynamics::whirl::{Whirl, WhirlMode};
 use fem::Material;
 
-use near::assert_near;
+use crate::near::assert_near;
 
 const LENGTH: f64 = 0.5;
 const OUTSIDE: f64 = 0.06;

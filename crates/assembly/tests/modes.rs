@@ -1,11 +1,6 @@
 //! Natural modes of bearings on a shaft: against one bearing alone, closed forms, the linearised bearings and their own
 //! symmetry.
 
-mod heavy;
-mod lists;
-#[path = "../../dynamics/tests/support/mod.rs"]
-mod support;
-
 use assembly::modes::modes;
 use assembly::shaft::ShaftBody;
 use assembly::stiffness::LinearAssembly;
@@ -18,11 +13,11 @@ use fem::Material;
 use input::Schedule;
 use ring::rigid::RigidInertia;
 
+use crate::heavy::swings;
+use crate::lists::{At, bare, flexible, on_shaft};
+use crate::support::rings::Level;
+use crate::support::{Case, equilibrium};
 use Orientation::{MinusZ, PlusZ};
-use heavy::swings;
-use lists::{At, bare, flexible, on_shaft};
-use support::rings::Level;
-use support::{Case, equilibrium};
 
 const INERTIA: RigidInertia = RigidInertia {
     mass: 1.5,

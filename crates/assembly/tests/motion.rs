@@ -1,12 +1,5 @@
 //! Several bearings on a shaft through time, against one bearing alone, modes of the same equations, and ledgers.
 
-mod heavy;
-mod housed;
-mod lists;
-mod near;
-#[path = "../../dynamics/tests/support/mod.rs"]
-mod support;
-
 use assembly::motion::AssemblyCache;
 use assembly::shaft::ShaftBody;
 use assembly::stiffness::LinearAssembly;
@@ -23,12 +16,12 @@ use fem::Material;
 use input::Schedule;
 use ring::rigid::RigidInertia;
 
+use crate::lists::{At, bare, flexible, on_shaft};
+use crate::near::assert_near;
+use crate::support::equilibrium;
 use Orientation::{MinusZ, PlusZ};
-use lists::{At, bare, flexible, on_shaft};
-use near::assert_near;
-use support::equilibrium;
 
-const INERTIA: RigidInertia = RigidInertia {
+pub const INERTIA: RigidInertia = RigidInertia {
     mass: 1.5,
     first_moment: 0.0,
     transverse: 2e-3,
@@ -87,7 +80,7 @@ fn set_load(model: &mut Model, [x, y, z, ..]: [f64; 5]) {
 }
 
 /// Runs from the equilibrium under the assembly's load, `n` steps of `dt` under another one at position 0.
-fn run(
+pub fn run(
     mut assembly: Assembly,
     (dt, n): (f64, usize),
     speed: &Speed,

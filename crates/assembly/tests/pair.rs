@@ -1,10 +1,5 @@
 //! Bearings on a shaft against closed forms of rigid rings, identities and differences.
 
-mod lists;
-mod near;
-#[path = "../../dynamics/tests/support/mod.rs"]
-mod support;
-
 use assembly::shaft::ShaftBody;
 use assembly::stiffness::LinearAssembly;
 use assembly::{
@@ -13,10 +8,10 @@ use assembly::{
 use dynamics::{DampingLaws, Linearisation, Model, StaticSolver};
 use ring::rigid::RigidInertia;
 
+use crate::lists::{At, bare, flexible, on_shaft};
+use crate::near::assert_near;
+use crate::support::{Case, equilibrium, steel};
 use Orientation::{MinusZ, PlusZ};
-use lists::{At, bare, flexible, on_shaft};
-use near::assert_near;
-use support::{Case, equilibrium, steel};
 
 fn rigid(places: &[At]) -> Assembly {
     on_shaft(ShaftBody::rigid(RigidInertia::default(), [None; 5]), places, bare)

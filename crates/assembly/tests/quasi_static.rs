@@ -1,10 +1,5 @@
 //! Several bearings on a shaft in equilibria over time: against one bearing alone, and against equilibria at rest.
 
-mod lists;
-mod near;
-#[path = "../../dynamics/tests/support/mod.rs"]
-mod support;
-
 use assembly::Orientation::{MinusZ, PlusZ};
 use assembly::shaft::ShaftBody;
 use assembly::{Assembly, AssemblySolution, AssemblySolver};
@@ -14,8 +9,8 @@ use dynamics::{Model, Pose, QuasiStaticMotion, ShaftDof};
 use input::Schedule;
 use ring::rigid::RigidInertia;
 
-use lists::{At, bare, flexible, on_shaft};
-use near::assert_near;
+use crate::lists::{At, bare, flexible, on_shaft};
+use crate::near::assert_near;
 
 const NOTHING: RigidInertia = RigidInertia {
     mass: 0.0,

@@ -1,7 +1,5 @@
 //! What effects cost: nothing when they are absent, one pass over the nodes when they load rings.
 
-mod support;
-
 use contact::Side;
 use dynamics::costs::of_effects;
 use dynamics::effects::{self, AxialForce, Effect, Gravity, Now, RingDamping};
@@ -12,8 +10,8 @@ use dynamics::{ContactMode, Hold, Inventory, Model, StaticSolver};
 use input::Schedule;
 use timer::Laps;
 
-use support::Case;
-use support::rings::Level;
+use crate::support::Case;
+use crate::support::rings::Level;
 
 const SMALL: Level = Level::hex8(36, 4, 1, 1);
 

@@ -1,15 +1,13 @@
 //! Motion under loads that follow the contact angles, and with a shaft that is driven.
 
-mod support;
-
 use dynamics::effects::{BallCentrifugal, GyroscopicMoment, MomentShares, Now};
 use dynamics::kinematics::{BallSpeeds, Speed};
 use dynamics::motion::{Motion, MotionSettings, MotionState};
 use dynamics::{ContactMode, Hold, Model, Pose, ShaftDof, StaticSolver};
 use input::Schedule;
 
-use support::rings::Level;
-use support::{Case, equilibrium, states_from};
+use crate::support::rings::Level;
+use crate::support::{Case, equilibrium, states_from};
 
 const SMALL: Level = Level::hex8(54, 6, 1, 2);
 /// 15 000 rpm, rad/s.

@@ -1,10 +1,10 @@
 //! Inertia of the elastic part of a turning ring: left out where it is nothing, and only there.
 
-mod support;
-
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
+use crate::support::rings::{Level, ring};
+use crate::support::{Case, equilibrium, on_threads, states_from};
 use contact::Side;
 use dynamics::effects::{FrameRotation, Loads, Now, static_inertia};
 use dynamics::interactions::contact_damping::ContactDamping;
@@ -19,8 +19,6 @@ use dynamics::{
 use ring::first_frequency::{FrequencyBounds, first_frequency, first_frequency_above, first_frequency_bound};
 use ring::statics::StaticSettings;
 use ring::{BodySettings, ElasticBody, Frame, Partner, elastic_body};
-use support::rings::{Level, ring};
-use support::{Case, equilibrium, on_threads, states_from};
 
 const SMALL: Level = Level::hex8(54, 6, 1, 2);
 /// A limit that every ring of these tests keeps below.

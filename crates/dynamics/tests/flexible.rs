@@ -1,14 +1,12 @@
 //! Flexible rings: convergence of ball forces and contact angles, limits, symmetries, and what facets get wrong.
 
-mod support;
-
 use std::path::Path;
 use std::sync::Arc;
 
+use crate::support::rings::{Level, ring_model};
+use crate::support::{Case, equilibrium, relative};
 use contact::Side;
 use dynamics::{ContactMode, Hold, Model, ShaftDof, StaticSolution};
-use support::rings::{Level, ring_model};
-use support::{Case, equilibrium, relative};
 
 const COARSE: Level = Level::hex8(90, 6, 1, 2);
 const MEDIUM: Level = Level::hex8(180, 10, 3, 4);

@@ -1,7 +1,7 @@
 //! The turning frame, mounts and integrators of a motion.
 
-mod support;
-
+use crate::support::rings::{self, Level};
+use crate::support::{Case, equilibrium};
 use contact::Side;
 use dynamics::effects::FrameRotation;
 use dynamics::interactions::contact_damping::ContactDamping;
@@ -9,8 +9,6 @@ use dynamics::kinematics::Speed;
 use dynamics::motion::{Integrator, Motion, MotionSettings, MotionState, StepCache};
 use dynamics::{Backend, ContactMode, Hold, Model, Sectors, ShaftDof, StaticSolution};
 use ring::Frame;
-use support::rings::{self, Level};
-use support::{Case, equilibrium};
 
 const SMALL: Level = Level::hex8(54, 6, 1, 2);
 

@@ -2,18 +2,16 @@
 
 #![allow(clippy::float_cmp)]
 
-mod support;
-
 use std::path::Path;
 use std::sync::Arc;
 
+use crate::support::rings::{Level, ring_model};
+use crate::support::{Case, equilibrium, on_threads};
 use contact::Side;
 use dynamics::effects::{FrameRotation, RingDamping};
 use dynamics::kinematics::Speed;
 use dynamics::motion::{Motion, MotionSettings, MotionState, StepCache};
 use dynamics::{Backend, ContactMode, Hold, Model, Sectors};
-use support::rings::{Level, ring_model};
-use support::{Case, equilibrium, on_threads};
 
 /// Speed of the inner ring, rad/s: 1800 rpm.
 const SPEED: f64 = 60.0 * std::f64::consts::PI;

@@ -1,15 +1,13 @@
 //! Gyroscopic moment of the balls: signs from first principles, Harris's equations, balance of forces and moments.
 
-mod support;
-
+use crate::support::finite::{InnerContact, cross};
+use crate::support::harris::solve_harris;
+use crate::support::rings::Level;
+use crate::support::{Case, equilibrium, relative};
 use contact::Side;
 use dynamics::effects::{BallCentrifugal, GyroscopicMoment, MomentShares, Now};
 use dynamics::kinematics::{BallSpeeds, Kinematics, Speed};
 use dynamics::{ContactMode, Hold, Model, Pose, StaticSolution, StaticSolver};
-use support::finite::{InnerContact, cross};
-use support::harris::solve_harris;
-use support::rings::Level;
-use support::{Case, equilibrium, relative};
 
 /// 30 000 rpm, rad/s.
 const FAST: f64 = 1000.0 * std::f64::consts::PI;

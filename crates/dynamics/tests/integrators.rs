@@ -1,10 +1,10 @@
 //! Integrators on a free elastic ring, against modal theory.
 
-mod support;
-
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
+use crate::support::Case;
+use crate::support::rings::{Level, ring};
 use contact::Side;
 use dynamics::effects::{Effect, Loads, Now};
 use dynamics::kinematics::Speed;
@@ -13,8 +13,6 @@ use dynamics::motion::{Integrator, Motion, MotionSettings, MotionState, StepCach
 use dynamics::{
     ContactMode, DynamicsError, Hold, Mode, Model, ModesSettings, RingModel, RingSupport, ShaftDof,
 };
-use support::Case;
-use support::rings::{Level, ring};
 
 const SMALL: Level = Level::hex8(54, 6, 1, 2);
 /// Largest displacement, m: contacts are 40 um away.

@@ -1,13 +1,11 @@
 //! Steps that adapt on the ladder dt 2^-k.
 
-mod support;
-
+use crate::support::rings::Level;
+use crate::support::{Case, equilibrium, on_threads};
 use contact::Side;
 use dynamics::kinematics::Speed;
 use dynamics::motion::{Ladder, Motion, MotionSettings, MotionState, StepCache};
 use dynamics::{ContactMode, DynamicsError, Hold, Model, ShaftDof, StaticSolution};
-use support::rings::Level;
-use support::{Case, equilibrium, on_threads};
 
 const SMALL: Level = Level::hex8(54, 6, 1, 2);
 

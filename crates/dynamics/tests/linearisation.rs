@@ -1,9 +1,8 @@
 //! Modes of a bearing with rigid rings against the eigenvalues of its own motion, linearised by differences.
 
-mod support;
-
 use std::f64::consts::TAU;
 
+use crate::support::{Case, equilibrium, relative};
 use contact::Meridian;
 use dynamics::kinematics::Speed;
 use dynamics::model::ShaftInertia;
@@ -12,7 +11,6 @@ use dynamics::motion::{Motion, MotionSettings, MotionState, StepCache};
 use dynamics::whirl::{TurningShaft, turning_inertia};
 use dynamics::{Backend, DampingLaws, Linearisation, Model, ShaftDof, StaticSolver};
 use ode_solvers::DVector;
-use support::{Case, equilibrium, relative};
 
 /// Dofs of the shaft.
 const N_SHAFT: usize = 5;

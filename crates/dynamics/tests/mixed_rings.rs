@@ -1,7 +1,5 @@
 //! Bearings with one rigid and one flexible ring: natural modes beside those of the shaft that turns, at rest.
 
-mod support;
-
 use contact::Side;
 use dynamics::effects::{AxialForce, SpringPreload};
 use dynamics::interactions::seat_spring::Seat;
@@ -11,8 +9,8 @@ use dynamics::whirl::{TurningShaft, turning_inertia};
 use dynamics::{Backend, ContactMode, DampingLaws, Hold, Linearisation, Model, StaticSolver};
 use input::Schedule;
 
-use support::rings::Level;
-use support::{Case, relative};
+use crate::support::rings::Level;
+use crate::support::{Case, relative};
 
 const LOAD: f64 = 2000.0;
 

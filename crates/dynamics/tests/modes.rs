@@ -1,18 +1,16 @@
 //! Natural modes: closed forms, convergence with the mesh, agreement with statics.
 
-mod support;
-
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 
+use crate::support::rings::{Level, ring, ring_model};
+use crate::support::{Case, equilibrium, on_threads};
 use contact::Side;
 use dynamics::modes::{bearing_modes, ring_modes};
 use dynamics::{
     ContactMode, Hold, Mode, ModeSet, Model, ModesSettings, RingModel, RingSupport, StaticSolution,
 };
 use mesh::{ElementKind, Section, revolve};
-use support::rings::{Level, ring, ring_model};
-use support::{Case, equilibrium, on_threads};
 
 const SMALL: Level = Level::hex8(54, 6, 1, 2);
 

@@ -1,13 +1,11 @@
 //! A bearing that nothing holds: momentum.
 
-mod support;
-
+use crate::support::Case;
+use crate::support::rings::Level;
 use contact::{HertzContact, Meridian, Side, SphereCompliance, cross};
 use dynamics::kinematics::Speed;
 use dynamics::motion::{Motion, MotionSettings, MotionState, StepCache};
 use dynamics::{ContactMode, Hold, Model, ShaftDof};
-use support::Case;
-use support::rings::Level;
 
 /// Step, s.
 const STEP: f64 = 2e-6;

@@ -1,15 +1,13 @@
 //! Motion in time: energy, equilibrium, rolling.
 
-mod support;
-
+use crate::support::rings::Level;
+use crate::support::{Case, equilibrium, on_threads, states_from};
 use dynamics::effects::RingDamping;
 use dynamics::interactions::contact_damping::ContactDamping;
 use dynamics::interactions::discrete_gradient::ContactScheme;
 use dynamics::kinematics::Speed;
 use dynamics::motion::{Motion, MotionSettings, MotionState, StepCache};
 use dynamics::{ContactMode, Hold, Model, StaticSolution};
-use support::rings::Level;
-use support::{Case, equilibrium, on_threads, states_from};
 
 fn settings(dt: f64) -> MotionSettings {
     MotionSettings::conserving(dt, Speed::constant(0.0))

@@ -1,15 +1,15 @@
 //! Flexible rings on their seats, against closed forms and by other ways.
 
-mod support;
-
+use crate::support::mounting::{
+    ALPHA, I, at, fit, fitted, flexible, message, mount, mounted_model, unmounted,
+};
+use crate::support::rings::Level;
+use crate::support::{Case, equilibrium, relative, steel};
 use ::ring::statics::{RingSolver, StaticSettings};
 use ::ring::{Partner, SeatAction};
 use contact::{BearingGeometry, Side};
 use dynamics::mounting::{Conditions, Mounting, SeatForm};
 use dynamics::{Backend, ContactMode, Hold, Model, NodalStress, Sectors};
-use support::mounting::{ALPHA, I, at, fit, fitted, flexible, message, mount, mounted_model, unmounted};
-use support::rings::Level;
-use support::{Case, equilibrium, relative, steel};
 
 /// Wrong: finite elements would grow more than the tube to the groove bottom, or less than that to the shoulder, of
 /// which the section lies between; or a pressed seat otherwise than a moved one.

@@ -1,17 +1,15 @@
 //! Fits and temperatures against closed forms of thick tubes, at rest and in motion.
 
-mod support;
-
+use crate::support::mounting::{
+    ALPHA, I, RINGS, at, fit, fitted, flexible, message, mount, mounted_model, unmounted,
+};
+use crate::support::rings::Level;
+use crate::support::{Case, equilibrium, relative};
 use contact::{BearingGeometry, Side};
 use dynamics::kinematics::RingSpeeds;
 use dynamics::motion::{Motion, MotionSettings, StepCache};
 use dynamics::mounting::{Conditions, Mounting};
 use dynamics::{ContactMode, Hold};
-use support::mounting::{
-    ALPHA, I, RINGS, at, fit, fitted, flexible, message, mount, mounted_model, unmounted,
-};
-use support::rings::Level;
-use support::{Case, equilibrium, relative};
 
 /// Wrong: a rigid ring would not grow as a tube on a solid shaft of its own steel: I d / d_i, 8.927 um of 10 um, with
 /// E I (d_i^2 - d^2) / (2 d d_i^2) = 4.20 MPa; and in a housing twice as large shrink by 8.83 um.

@@ -4,10 +4,10 @@
 //! angle, and half a turn about any line across it. They make the whole group of turns of a bearing: another axis turns
 //! the frame too.
 
-mod support;
-
 use std::f64::consts::TAU;
 
+use crate::support::rings::Level;
+use crate::support::{Case, equilibrium, states_from};
 use contact::{BearingGeometry, Meridian};
 use dynamics::displacements::Displacements;
 use dynamics::effects::unbalance::Unbalance;
@@ -17,8 +17,6 @@ use dynamics::model::ShaftInertia;
 use dynamics::motion::{Motion, MotionSettings, MotionState, PatchPlace};
 use dynamics::{ContactMode, Hold, Model, ShaftDof, StaticSolution};
 use input::Schedule;
-use support::rings::Level;
-use support::{Case, equilibrium, states_from};
 
 const BALLS: usize = 18;
 /// Azimuth of ball 0, rad: nothing lies on an axis.

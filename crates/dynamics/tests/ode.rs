@@ -1,7 +1,7 @@
 //! Rigid rings against an independent solution of their equations by an ODE solver.
 
-mod support;
-
+use crate::support::finite::{cross, on_tilts, rotation, times};
+use crate::support::{Case, equilibrium};
 use contact::Side;
 use dynamics::effects::{Effect, Loads, Now};
 use dynamics::kinematics::Speed;
@@ -10,8 +10,6 @@ use dynamics::motion::{Motion, MotionSettings, StepCache};
 use dynamics::{DynamicsError, Model, StaticSolution};
 use ode_solvers::rk4::Rk4;
 use ode_solvers::{DVector, System};
-use support::finite::{cross, on_tilts, rotation, times};
-use support::{Case, equilibrium};
 
 /// A radial force F sin^2(pi t / T): smooth, zero with zero slope at the start.
 #[derive(Clone, Copy)]

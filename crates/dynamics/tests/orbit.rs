@@ -1,7 +1,5 @@
 //! The way of the balls round the bearing: modes at speed beside a motion, and damping of contacts that balls pass.
 
-mod support;
-
 use contact::Side;
 use dynamics::interactions::contact_damping::{ContactDamping, coefficient};
 use dynamics::kinematics::{Kinematics, Speed};
@@ -10,8 +8,8 @@ use dynamics::motion::{Motion, MotionSettings, StepCache};
 use dynamics::whirl::{TurningShaft, Whirl, WhirlMode, turning_inertia};
 use dynamics::{DampingLaws, Linearisation, Model, ShaftDof, StaticSolution, StaticSolver};
 
-use support::lines::{PUSH, Push, line_at, line_near, of_middle_rule};
-use support::{Case, equilibrium};
+use crate::support::lines::{PUSH, Push, line_at, line_near, of_middle_rule};
+use crate::support::{Case, equilibrium};
 
 const SPEED: f64 = 4000.0;
 const DAMPING: ContactDamping = ContactDamping {

@@ -1,17 +1,15 @@
 //! An outer ring that turns, alone and beside the inner one.
 
-mod support;
-
 use std::f64::consts::PI;
 
+use crate::support::rings::Level;
+use crate::support::{Case, equilibrium, relative, states_from};
 use contact::Side;
 use dynamics::effects::{BallCentrifugal, FrameRotation, Gravity, GyroscopicMoment, MomentShares};
 use dynamics::kinematics::{BallSpeeds, Kinematics, RingSpeeds, Rolling, Speed};
 use dynamics::motion::{Motion, MotionSettings, MotionState};
 use dynamics::{ContactMode, Hold, Model, Pose, QuasiStaticMotion, ShaftDof, StaticSolution, StaticSolver};
 use input::Schedule;
-use support::rings::Level;
-use support::{Case, equilibrium, relative, states_from};
 
 const SMALL: Level = Level::hex8(54, 6, 1, 2);
 /// 12 000 rpm, rad/s.

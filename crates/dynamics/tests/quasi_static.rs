@@ -1,7 +1,5 @@
 //! A bearing that turns without inertia, against equilibria at rest, its own period, and motion in time.
 
-mod support;
-
 use std::f64::consts::PI;
 
 use contact::Side;
@@ -11,8 +9,8 @@ use dynamics::motion::{Motion, MotionSettings, StepCache};
 use dynamics::{ContactMode, Hold, Model, Pose, QuasiStaticMotion, StaticSolution, StaticSolver};
 use input::Schedule;
 
-use support::rings::Level;
-use support::{Case, relative};
+use crate::support::rings::Level;
+use crate::support::{Case, relative};
 
 const SMALL: Level = Level::hex8(54, 6, 1, 2);
 /// 1800 rpm, rad/s.
@@ -66,7 +64,7 @@ fn rigid_rings_pass_through_the_equilibria_at_the_phases_of_the_cage() {
         let dt = 1.7e-4;
         for (step, moving) in run(&model, dt, 6).iter().enumerate() {
             let phase = rolling(&model).pose(step as f64 * dt).now.cage_angle;
-            let rest = support::equilibrium(&Case { phase, ..case }.rigid());
+            let rest = crate::support::equilibrium(&Case { phase, ..case }.rigid());
             assert!(force_change(&rest, moving, 0) < 1e-12, "step {step}");
             for (a, b) in rest.balls.iter().zip(&moving.balls) {
                 assert!((a.azimuth_rad - b.azimuth_rad).abs() < 1e-12);

@@ -1,14 +1,12 @@
 //! Rigid rings: the Jones-Harris limit against closed forms and balance laws.
 
-mod support;
-
 use contact::{BearingGeometry, SphereCompliance};
 use dynamics::effects::Gravity;
 use dynamics::{DynamicsError, Model, ShaftDof, StaticSolver};
 use input::Schedule;
 
-use support::finite::{InnerContact, cross, on_tilts, rotation, times};
-use support::{Case, equilibrium, relative};
+use crate::support::finite::{InnerContact, cross, on_tilts, rotation, times};
+use crate::support::{Case, equilibrium, relative};
 
 /// Wrong: the thrust equilibrium. Harris (4th ed.), eq. 7.30-7.33: F = Z K A^1.5 sin a (cos a0/cos a - 1)^1.5, with
 /// the two contacts in series. Tolerance: both sides are solved to round-off.

@@ -1,9 +1,9 @@
 //! One flexible ring: its hold, its patches, its compliance.
 
-mod support;
-
 use std::collections::BTreeMap;
 
+use crate::support::rings::{Level, ring, ring_model};
+use crate::support::{Case, LEAST_PATCH};
 use contact::patch_shape::PatchShape;
 use contact::quadrature::PressureRule;
 use contact::{Patch, RacewaySurface, SemiAxes, Side};
@@ -13,8 +13,6 @@ use dynamics::{Backend, ContactMode, Hold, RingModel, Sectors, SharedStress, Str
 use fem::StressRecovery;
 use mesh::{ElementKind, Mesh};
 use ring::division::body_load;
-use support::rings::{Level, ring, ring_model};
-use support::{Case, LEAST_PATCH};
 
 const LEVEL: Level = Level::hex8(54, 6, 1, 2);
 

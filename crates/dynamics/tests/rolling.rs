@@ -1,18 +1,16 @@
 //! A rolling bearing after its start: agreement with equilibria, and the lines of its spectra.
 
-mod support;
-
 use std::f64::consts::{PI, TAU};
 use std::sync::LazyLock;
 
+use crate::support::Case;
+use crate::support::rings::Level;
 use contact::Side;
 use dynamics::balls::BallResult;
 use dynamics::interactions::contact_damping::ContactDamping;
 use dynamics::kinematics::{Rolling, Speed};
 use dynamics::motion::{Motion, MotionSettings, MotionState, StepCache};
 use dynamics::{ContactMode, Hold, Model, QuasiStaticMotion};
-use support::Case;
-use support::rings::Level;
 
 /// 50 elements round each ring: no multiple of 18 balls, so that elements and balls have different lines.
 const MESH: Level = Level::hex8(50, 6, 1, 2);
@@ -292,7 +290,7 @@ fn rolling_without_friction_needs_no_drive() {
     let pitch = TAU / (model.geometry.n_balls as f64 * rolling.kinematics.cage * SPEED);
     let dt = pitch / PITCH_STEPS as f64;
     let motion = Motion::new(&model, MotionSettings::conserving(dt, rolling.speeds.clone())).unwrap();
-    let mut state = motion.start(&support::equilibrium(&model));
+    let mut state = motion.start(&crate::support::equilibrium(&model));
     let mut drive = Vec::new();
     for _ in 0..3 {
         let mut cache = StepCache::default();

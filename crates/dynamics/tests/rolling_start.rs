@@ -1,14 +1,12 @@
 //! Motions that start on the course of the equilibria of a bearing that rolls.
 
-mod support;
-
+use crate::support::Case;
 use contact::Meridian;
 use dynamics::interactions::contact_damping::ContactDamping;
 use dynamics::kinematics::{Rolling, Speed};
 use dynamics::model::ShaftInertia;
 use dynamics::motion::{EquilibriumRates, Motion, MotionSettings, MotionState, StepCache};
 use dynamics::{Model, StaticSolution, StaticSolver};
-use support::Case;
 
 /// Speed of the shaft, rad/s: 40 000 rpm.
 const SPEED: f64 = 40e3 * std::f64::consts::PI / 30.0;

@@ -1,17 +1,15 @@
 //! Balls that roll over real surfaces in time: spalls on rigid and flexible rings, their times, and the ledger.
 
-mod support;
-
 use std::f64::consts::PI;
 use std::sync::Arc;
 
+use crate::support::rings::Level;
+use crate::support::{Case, equilibrium, relative, states_from};
 use contact::surface::{Spall, Wave};
 use contact::{Profiles, Side, StripLaw, StripSurface};
 use dynamics::kinematics::{Kinematics, Speed};
 use dynamics::motion::{Motion, MotionSettings, MotionState, StepCache};
 use dynamics::{ContactMode, Hold, Model};
-use support::rings::Level;
-use support::{Case, equilibrium, relative, states_from};
 
 const SMALL: Level = Level::hex8(54, 6, 1, 2);
 /// 1800 rpm, rad/s.

@@ -1,12 +1,10 @@
 //! Loads and imposed displacements at a time: the same bearing as under their value at that time.
 
-mod support;
-
 use dynamics::effects::{AxialForce, Effect, Gravity, Moment, Now, RadialForce};
 use dynamics::{Model, Pose, ShaftDof, StaticSolution, StaticSolver};
 use input::Schedule;
 
-use support::Case;
+use crate::support::Case;
 
 /// A bearing under all scheduled loads and a driven tilt; `at` makes the schedule of each from its number.
 fn bearing(at: impl Fn(usize) -> Schedule) -> Model {

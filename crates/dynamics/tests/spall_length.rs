@@ -17,18 +17,16 @@
 //! length is L = 2 v (time from entry to impact), v the speed of the contact on the track. Where Q_i comes to zero the
 //! ball flies, and the shaft does not feel where it is: there is no length to find.
 
-mod support;
-
 use std::f64::consts::PI;
 use std::sync::Arc;
 
+use crate::support::{Case, equilibrium};
 use contact::surface::Spall;
 use contact::{Profiles, Side, StripLaw, StripSurface};
 use dynamics::Model;
 use dynamics::interactions::contact_damping::ContactDamping;
 use dynamics::kinematics::{Kinematics, Speed};
 use dynamics::motion::{Motion, MotionSettings, StepCache};
-use support::{Case, equilibrium};
 
 const SHAFT: f64 = 2.0;
 /// Largest way of the contact in a step, m, and largest step, s.

@@ -1,17 +1,15 @@
 //! Balls whose contacts are not opposite yield between them by the angle as it is: fast balls on rigid and elastic
 //! rings, at rest and in motion.
 
-mod support;
-
 use std::f64::consts::PI;
 
+use crate::support::rings::Level;
+use crate::support::{Case, equilibrium, on_threads, relative, states_from};
 use contact::{Meridian, Side};
 use dynamics::effects::BallCentrifugal;
 use dynamics::kinematics::{BallSpeeds, Kinematics, Speed};
 use dynamics::motion::{Motion, MotionSettings, MotionState};
 use dynamics::{ContactMode, Hold, Model};
-use support::rings::Level;
-use support::{Case, equilibrium, on_threads, relative, states_from};
 
 /// 20 000 rpm, rad/s.
 const FAST: f64 = 20e3 * PI / 30.0;

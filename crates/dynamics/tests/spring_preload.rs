@@ -1,9 +1,9 @@
 //! A spring that presses the outer ring along the axis: balance, the mirror of a load on the shaft, the ledger, modes.
 
-mod support;
-
 use std::f64::consts::TAU;
 
+use crate::support::rings::Level;
+use crate::support::{Case, equilibrium, relative};
 use dynamics::effects::{
     AxialForce, BallCentrifugal, Gravity, GyroscopicMoment, MomentShares, RadialForce, SpringPreload,
 };
@@ -13,8 +13,6 @@ use dynamics::modes::bearing_modes;
 use dynamics::motion::{Ladder, Motion, MotionSettings, MotionState, StepCache};
 use dynamics::{Backend, ContactMode, Hold, Model, ModesSettings, ShaftDof, StaticSolution, StaticSolver};
 use input::Schedule;
-use support::rings::Level;
-use support::{Case, equilibrium, relative};
 
 const SMALL: Level = Level::hex8(54, 6, 1, 2);
 const FORCE: f64 = 500.0;

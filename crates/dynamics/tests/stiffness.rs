@@ -1,7 +1,5 @@
 //! The stiffness of a bearing against closed forms and against differences of whole equilibria.
 
-mod support;
-
 use dynamics::effects::{BallCentrifugal, GyroscopicMoment, MomentShares, RingDamping, SpringPreload};
 use dynamics::interactions::contact_damping::ContactDamping;
 use dynamics::kinematics::{BallSpeeds, RingSpeeds, Speed};
@@ -10,8 +8,8 @@ use dynamics::{
     ContactMode, DampingLaws, Hold, Linearisation, Model, ShaftDof, StaticSolution, StaticSolver,
 };
 
-use support::rings::Level;
-use support::{Case, relative};
+use crate::support::rings::Level;
+use crate::support::{Case, relative};
 
 const SMALL: Level = Level::hex8(54, 6, 1, 2);
 

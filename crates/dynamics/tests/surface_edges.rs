@@ -1,18 +1,16 @@
 //! Contacts at the edges of grooves and over profiles: what is said of them, and that rest and motion agree.
 
-mod support;
-
 use std::ops::RangeInclusive;
 use std::sync::Arc;
 
+use crate::support::rings::Level;
+use crate::support::{Case, equilibrium, relative};
 use contact::surface::{Spall, Wave};
 use contact::{Profiles, Side, StripLaw, StripSurface};
 use dynamics::kinematics::Speed;
 use dynamics::motion::{ContactLimit, Motion, MotionSettings, StepCache};
 use dynamics::surfaces::EllipseKind;
 use dynamics::{ContactMode, Hold, Model, StaticSolver};
-use support::rings::Level;
-use support::{Case, equilibrium, relative};
 
 fn with_outer_strips(mut model: Model, shoulders: Option<RangeInclusive<f64>>, profiles: &Profiles) -> Model {
     let law = StripLaw::new(&model.hertz[1], model.geometry.groove_radius(Side::Outer));

@@ -1,13 +1,11 @@
 //! Real surfaces at rest and without inertia, on rigid rings: against Hertz's law and closed forms.
 
-mod support;
-
 use std::sync::Arc;
 
+use crate::support::{Case, equilibrium, relative};
 use contact::surface::{Spall, Wave};
 use contact::{Profiles, Side, StripLaw, StripSurface};
 use dynamics::{Model, Pose, StaticSolver, Surfaces};
-use support::{Case, equilibrium, relative};
 
 /// Puts strips on one raceway of a model.
 fn with_strips(

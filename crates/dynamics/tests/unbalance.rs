@@ -1,7 +1,7 @@
 //! An unbalanced shaft: tilting moment, momentum, the Jeffcott rotor, the ledger, equilibria of a turning bearing.
 
-mod support;
-
+use crate::support::rings::Level;
+use crate::support::{Case, equilibrium, relative};
 use contact::Side;
 use dynamics::effects::unbalance::Unbalance;
 use dynamics::effects::{self, Now, RadialForce};
@@ -9,8 +9,6 @@ use dynamics::kinematics::{Rolling, Speed};
 use dynamics::motion::{Motion, MotionSettings, MotionState, StepCache};
 use dynamics::{ContactMode, Hold, Model, QuasiStaticMotion, ShaftDof};
 use input::Schedule;
-use support::rings::Level;
-use support::{Case, equilibrium, relative};
 
 /// Mass times eccentricity, kg m.
 const MOMENT: f64 = 2e-5;

@@ -1,15 +1,13 @@
 //! Temperatures that change in time or vary with the radius: against constant ones, closed forms and balances.
 
-mod support;
-
+use crate::support::mounting::{ALPHA, RINGS, at, fit, fitted, flexible, mount, mounted_model, unmounted};
+use crate::support::rings::Level;
+use crate::support::{Case, equilibrium, relative};
 use contact::{BearingGeometry, Meridian, Side};
 use dynamics::kinematics::{RingSpeeds, Rolling, Speed};
 use dynamics::motion::{Motion, MotionSettings, MotionState, StepCache};
 use dynamics::mounting::{Conditions, Mounting, RadialProfile, RingTemperature, TemperatureSchedule};
 use dynamics::{ContactMode, Hold, Model, QuasiStaticMotion};
-use support::mounting::{ALPHA, RINGS, at, fit, fitted, flexible, mount, mounted_model, unmounted};
-use support::rings::Level;
-use support::{Case, equilibrium, relative};
 
 const SMALL: Level = Level::hex8(36, 6, 1, 2);
 

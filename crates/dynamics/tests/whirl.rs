@@ -1,7 +1,5 @@
 //! Modes at speed against the closed form of a rigid rotor on springs, a free gyroscope, modes at rest, and a motion.
 
-mod support;
-
 use contact::Side;
 use dynamics::interactions::contact_damping::ContactDamping;
 use dynamics::kinematics::{Kinematics, Speed};
@@ -13,9 +11,9 @@ use dynamics::whirl::{ShaftRow, TurningShaft, Whirl, WhirlMatrices, WhirlMode, t
 use dynamics::{Backend, ContactMode, DampingLaws, Hold, Linearisation, Model, ShaftDof, StaticSolver};
 use fem::Material;
 
-use support::lines::{PUSH, Push, line_near, of_middle_rule};
-use support::rings::Level;
-use support::{Case, equilibrium, relative};
+use crate::support::lines::{PUSH, Push, line_near, of_middle_rule};
+use crate::support::rings::Level;
+use crate::support::{Case, equilibrium, relative};
 
 const INERTIA: ShaftInertia = ShaftInertia {
     transverse: 2.4e-4,

@@ -1,18 +1,16 @@
 //! Balls that are no spheres, at rest and in motion: how they turn, when raceways meet their marks, and the ledger.
 
-mod support;
-
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
+use crate::support::rings::Level;
+use crate::support::worn::spall;
+use crate::support::{Case, equilibrium};
 use contact::surface::Wave;
 use contact::{BallSurface, Profiles, Side, StripLaw, StripSurface};
 use dynamics::kinematics::{Kinematics, Rolling, Speed};
 use dynamics::motion::{Motion, MotionSettings, MotionState, StepCache};
 use dynamics::{ContactMode, Hold, Model, Pose, StaticSolver};
-use support::rings::Level;
-use support::worn::spall;
-use support::{Case, equilibrium};
 
 const SMALL: Level = Level::hex8(54, 6, 1, 2);
 /// 1800 rpm, rad/s.

@@ -1,11 +1,9 @@
 //! Borders of a factored matrix against the whole matrix, and the borders that are refused.
 
-mod common;
-
 use dense::DenseCholesky;
 use solver::{Bordered, LinearSolver, SolverError, SparseCholesky, Symbolic};
 
-use common::{Ring, assert_close, dense};
+use crate::common::{Ring, assert_close, dense};
 
 /// A sparse factor and its matrix.
 fn factored() -> (SparseCholesky, Vec<f64>) {

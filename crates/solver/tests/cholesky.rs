@@ -1,14 +1,12 @@
 //! The sparse factorisation against dense solutions, and its errors.
 
-mod common;
-
 use dense::DenseLu;
 use solver::{
     LinearSolver, SolverError, SparseCholesky, Symbolic, expand, restrict, restrict_order, solve_refined,
 };
 use sprs::{CsMat, TriMat};
 
-use common::{Numbers, Ring, assert_close, count_fill, dense, product, shifted};
+use crate::common::{Numbers, Ring, assert_close, count_fill, dense, product, shifted};
 
 /// Condition numbers here are below 1e6, so solutions agree to 1e-10 when both are backward stable.
 const AGREEMENT: f64 = 1e-10;

@@ -1,8 +1,6 @@
 //! A dense factor as a linear solver.
 
-mod common;
-
-use common::{Numbers, assert_close};
+use crate::common::{Numbers, assert_close};
 use dense::DenseCholesky;
 use solver::LinearSolver;
 

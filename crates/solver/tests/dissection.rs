@@ -1,8 +1,6 @@
 //! The elimination order: always a permutation, and less fill than other orders.
 
-mod common;
-
-use common::{Numbers, Ring, count_fill};
+use crate::common::{Numbers, Ring, count_fill};
 use solver::{angular_dissection, expand};
 
 #[track_caller]

@@ -1,10 +1,8 @@
 //! Lowest eigenpairs against closed forms and the dense method.
 
-mod common;
-
 use std::f64::consts::PI;
 
-use common::{Numbers, product};
+use crate::common::{Numbers, product};
 use dense::{DenseError, EigenProblem, Eigenpairs, LanczosSettings, dense_lowest, lanczos, lowest_pairs};
 use solver::{LinearSolver, SparseCholesky, Symbolic};
 use sprs::{CsMat, TriMat};

@@ -1,11 +1,9 @@
 //! The halves of a sparse solve, and forward solutions that stay sparse, against whole solves.
 
-mod common;
-
 use solver::{LinearSolver, SparseCholesky, SparseVector, Symbolic, TriangularFactor};
 use sprs::{CsMat, TriMat};
 
-use common::{Numbers, Ring, assert_close, relative_error};
+use crate::common::{Numbers, Ring, assert_close, relative_error};
 
 /// Condition numbers here are below 1e6, so solutions agree to 1e-10 when both are backward stable.
 const AGREEMENT: f64 = 1e-10;

@@ -22,9 +22,9 @@ use dynamics::{ContactMode, Hold, RingModel, StaticSolver};
 use fem::Material;
 use mesh::{ElementKind, Facet, Mesh, Origin};
 
-use super::support::Case;
-use super::support::rings::{Level, ring};
-use super::{INERTIA, run};
+use crate::motion::{INERTIA, run};
+use crate::support::Case;
+use crate::support::rings::{Level, ring};
 use Orientation::{MinusZ, PlusZ};
 
 const LEVEL: Level = Level::hex8(54, 6, 1, 2);

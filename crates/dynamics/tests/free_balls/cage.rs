@@ -9,7 +9,7 @@ use dynamics::kinematics::{RingSpeeds, Speed};
 use dynamics::motion::{CageState, Ladder, Motion, MotionSettings, MotionState, StepCache};
 use input::Schedule;
 
-use crate::bearings::{coulomb, freed, rpm, run, settings, thrust};
+use super::bearings::{coulomb, freed, rpm, run, settings, thrust};
 use crate::support::equilibrium;
 
 /// A cage of 12 g, with clearances as bearings of this size have them.

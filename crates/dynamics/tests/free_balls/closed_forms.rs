@@ -4,7 +4,7 @@ use dynamics::interactions::traction::{Creep, PatchPoints, Traction};
 use dynamics::kinematics::{RingSpeeds, Speed};
 use dynamics::motion::{Motion, MotionState};
 
-use crate::bearings::{coulomb, freed, radial, run, settings};
+use super::bearings::{coulomb, freed, radial, run, settings};
 use crate::support::equilibrium;
 
 /// Speed of the first ball along its course, m/s.

@@ -10,7 +10,7 @@ use dynamics::motion::{Motion, MotionState};
 use dynamics::{Model, ShaftDof};
 use input::Schedule;
 
-use crate::bearings::{coulomb, freed, radial, rpm, run, settings, thrust};
+use super::bearings::{coulomb, freed, radial, rpm, run, settings, thrust};
 use crate::support::{equilibrium, relative};
 
 /// The 7010C with three balls.

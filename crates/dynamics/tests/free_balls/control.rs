@@ -8,7 +8,7 @@ use dynamics::interactions::traction::{Creep, Ellipse, PatchPoints, Traction};
 use dynamics::kinematics::{RingSpeeds, Speed};
 use fem::Material;
 
-use crate::bearings::{coulomb, freed, rpm, thrust};
+use super::bearings::{coulomb, freed, rpm, thrust};
 use crate::support::{equilibrium, relative, steel};
 
 fn speeds(n: f64) -> RingSpeeds {

@@ -10,7 +10,7 @@ use dynamics::{ContactMode, Hold, Model, ShaftDof};
 use fem::Material;
 use input::Schedule;
 
-use crate::bearings::{coulomb, freed, rpm, run, settings, thrust};
+use super::bearings::{coulomb, freed, rpm, run, settings, thrust};
 use crate::support::rings::{Level, ring};
 use crate::support::{equilibrium, relative, steel};
 

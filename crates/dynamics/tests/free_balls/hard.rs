@@ -5,7 +5,7 @@ use dynamics::interactions::traction::{Creep, PatchPoints, Traction, TractionLaw
 use dynamics::kinematics::{RingSpeeds, Speed};
 use dynamics::motion::{Integrator, Ladder, Motion, MotionSettings, StepCache};
 
-use crate::bearings::{coulomb, freed, rpm, run, settings, thrust};
+use super::bearings::{coulomb, freed, rpm, run, settings, thrust};
 use crate::support::equilibrium;
 
 struct Hard {
@@ -142,7 +142,7 @@ fn what_free_balls_cannot_do_is_said() {
     let mut caged = thrust(1000.0);
     caged.cage = Some(dynamics::interactions::cage::Cage {
         pocket_clearance: 5e-3,
-        ..crate::cage::cage()
+        ..super::cage::cage()
     });
     let caged = freed(caged, coulomb(0.07, Creep::Elastic), &speeds);
     let moving = Motion::new(&caged, conserving.clone()).unwrap();

@@ -6,7 +6,7 @@ use dynamics::kinematics::{RingSpeeds, Speed};
 use dynamics::motion::{Motion, MotionState, StepCache};
 use input::Schedule;
 
-use crate::bearings::{coulomb, freed, rpm, run, settings, thrust};
+use super::bearings::{coulomb, freed, rpm, run, settings, thrust};
 use crate::support::equilibrium;
 
 /// Thrust and a radial force that unloads some balls, while the speed rises from 2000 to 3000 rpm within a

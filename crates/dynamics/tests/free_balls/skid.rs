@@ -5,7 +5,7 @@ use dynamics::interactions::traction::Creep;
 use dynamics::kinematics::{RingSpeeds, Speed};
 use dynamics::motion::{Motion, MotionState};
 
-use crate::bearings::{coulomb, freed, rpm, run, settings, thrust};
+use super::bearings::{coulomb, freed, rpm, run, settings, thrust};
 use crate::support::equilibrium;
 
 /// A ball of the 7010C at 10 000 rpm, whose drag at the speed of rolling is a share of 2 mu Q_i, Q_i without drag.

@@ -9,7 +9,7 @@ use dynamics::motion::Motion;
 use dynamics::{ShaftDof, StaticSolution};
 use input::Schedule;
 
-use crate::bearings::{coulomb, freed, rpm, run, settings, thrust};
+use super::bearings::{coulomb, freed, rpm, run, settings, thrust};
 use crate::support::{equilibrium, relative};
 
 fn speeds(n: f64) -> RingSpeeds {

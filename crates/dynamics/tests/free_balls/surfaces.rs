@@ -9,8 +9,8 @@ use dynamics::interactions::traction::{Creep, PatchPoints, Traction};
 use dynamics::kinematics::{Kinematics, RingSpeeds, Speed};
 use dynamics::motion::{Motion, MotionState};
 
-use crate::bearings::{coulomb, freed, rpm, run, settings, thrust};
-use crate::flexible::flexible;
+use super::bearings::{coulomb, freed, rpm, run, settings, thrust};
+use super::flexible::flexible;
 use crate::support::{equilibrium, relative, steel};
 
 pub fn with_strips(mut model: Model, side: Side, profiles: &Profiles) -> Model {

@@ -6,7 +6,7 @@ use dynamics::interactions::traction::Creep;
 use dynamics::kinematics::{Kinematics, RingSpeeds, Speed};
 use dynamics::motion::{Motion, MotionState};
 
-use crate::bearings::{coulomb, freed, rpm, run, settings, thrust};
+use super::bearings::{coulomb, freed, rpm, run, settings, thrust};
 use crate::support::{equilibrium, relative};
 
 struct Steady {

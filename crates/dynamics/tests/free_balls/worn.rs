@@ -10,11 +10,11 @@ use dynamics::model::BallInertia;
 use dynamics::motion::{Motion, MotionState};
 use dynamics::{Model, ShaftDof};
 
-use crate::bearings::{rpm, run, settings};
-use crate::flexible::flexible;
+use super::bearings::{rpm, run, settings};
+use super::flexible::flexible;
+use super::surfaces::{after, turning, wave, with_strips};
 use crate::support::worn::spall;
 use crate::support::{equilibrium, steel};
-use crate::surfaces::{after, turning, wave, with_strips};
 
 /// Smooth grooves of strips, and a ball with profiles.
 pub fn with_ball(mut model: Model, ball: usize, profiles: &Profiles) -> Model {

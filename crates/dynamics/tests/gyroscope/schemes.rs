@@ -5,7 +5,7 @@ use dynamics::kinematics::Speed;
 use dynamics::motion::{Integrator, MotionSettings, MotionState};
 use ring::Frame;
 
-use crate::{RATE, TINY, fly, free_ring, ratio, rigid_shaft};
+use super::{RATE, TINY, fly, free_ring, ratio, rigid_shaft};
 
 /// Wrong: a scheme that damps would feed the nutation of what spins, with the moment of another time than that at which
 /// it balances: a third of its energy in these 15 rad of a rigid shaft by HHT, of first order in the step. It loses

@@ -13,10 +13,10 @@ use input::Schedule;
 
 use super::motion::{histories_of, struck};
 use super::shaft::{as_one, free, hollow_shaft, inner};
-use super::support::{on_threads, steel};
 use super::{
     bearing, difference, equilibrium, every_fifth, forces, harmonics, outer, space, surrounding, tube,
 };
+use crate::support::{on_threads, steel};
 
 /// A gravity by which bodies sag as much as the loads bend them, m/s^2.
 const GRAVITY: [f64; 3] = [3e4, -6e4, 2e4];

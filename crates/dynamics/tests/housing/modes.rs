@@ -7,8 +7,8 @@ use contact::Side;
 use dynamics::modes::{bearing_modes, ring_modes};
 use dynamics::{Backend, Hold, Mode, ModesSettings, RingModel, RingSupport};
 
-use super::support::steel;
 use super::{bearing, equilibrium, harmonics, outer, space, surrounding, tied, tube};
+use crate::support::steel;
 
 /// Modes that are compared.
 const NUMBER: usize = 10;

@@ -9,10 +9,10 @@ use dynamics::kinematics::Speed;
 use dynamics::motion::{Integrator, Motion, MotionSettings, MotionState, StepCache};
 use dynamics::{Backend, Hold, Model, RingModel, ShaftDof};
 
-use super::support::{on_threads, steel};
 use super::{
     bearing, difference, equilibrium, every_fifth, harmonics, outer, space, surrounding, tied, tube,
 };
+use crate::support::{on_threads, steel};
 
 /// Step, s.
 const STEP: f64 = 1e-5;

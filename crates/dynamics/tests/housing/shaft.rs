@@ -11,9 +11,9 @@ use dynamics::motion::{Motion, MotionSettings, MotionState, StepCache};
 use dynamics::{Backend, ContactMode, Hold, Mode, Model, ModesSettings, RingModel, ShaftDof};
 use fem::Material;
 
-use super::support::rings::ring;
-use super::support::{Case, on_threads, steel};
 use super::{LEVEL, difference, equilibrium, every_fifth, forces, harmonics, space, surrounding, wrapped};
+use crate::support::rings::ring;
+use crate::support::{Case, on_threads, steel};
 
 /// Step, s.
 const STEP: f64 = 1e-5;

@@ -7,8 +7,8 @@ use contact::patch_shape::PatchShape;
 use contact::{RingPoint, SemiAxes, Side};
 use fem::stress::von_mises;
 
-use crate::ANGLE;
-use crate::loaded::Ring;
+use super::ANGLE;
+use super::loaded::Ring;
 use crate::support::rings::Level;
 
 /// Points along each line of the comparison.

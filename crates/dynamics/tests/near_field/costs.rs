@@ -8,9 +8,9 @@ use contact::{LoadedPatch, NearField, RacewaySurface, Side};
 use dynamics::Hold;
 use fem::stress::StressRecovery;
 
+use super::{ANGLE, FORCE, NU, model};
 use crate::support::LEAST_PATCH;
 use crate::support::rings::{Level, ring};
-use crate::{ANGLE, FORCE, NU, model};
 
 /// Wrong: the price list of docs/stress.md. Shortest of some runs of both, in turn, on one thread, of 18 contacts on
 /// both rings.

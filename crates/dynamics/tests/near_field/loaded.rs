@@ -8,9 +8,9 @@ use dynamics::statics::StaticRing;
 use dynamics::{Hold, Model, RingModel};
 use fem::stress::PointRecovery;
 
+use super::{ANGLE, FORCE, model};
 use crate::support::LEAST_PATCH;
 use crate::support::rings::{Level, ring};
-use crate::{ANGLE, FORCE, model};
 
 /// A ring, clamped, ready for loads.
 pub struct Ring {

@@ -5,9 +5,9 @@ use std::f64::consts::PI;
 use contact::{LoadedPatch, NearField, RingPoint, Side};
 use fem::stress::von_mises;
 
-use crate::loaded::Ring;
+use super::loaded::Ring;
+use super::{ANGLE, NU};
 use crate::support::rings::Level;
-use crate::{ANGLE, NU};
 
 /// Depths below the middle of a contact, m.
 const DEPTHS: [f64; 3] = [0.1e-3, 0.2e-3, 0.5e-3];

@@ -9,9 +9,9 @@ use fem::quadrature::{hexahedron, quadrilateral};
 use fem::stress::{StressRecovery, von_mises};
 use mesh::Mesh;
 
+use super::{ANGLE, FORCE, PLACES, TWO_PER_CENT, model, on_mesh};
 use crate::support::graded::{Grading, graded_ring};
 use crate::support::rings::{Level, ring};
-use crate::{ANGLE, FORCE, PLACES, TWO_PER_CENT, model, on_mesh};
 
 /// Elements along a semi-axis of the ellipse, and along its smaller one in depth: with their middle nodes, nodes are
 /// an eighth apart.

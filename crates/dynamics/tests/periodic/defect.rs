@@ -6,8 +6,8 @@ use contact::Side;
 use dynamics::modes::ring_modes;
 use dynamics::{Backend, Hold, Model, ModesSettings, RingSupport, StaticSolver};
 
+use super::{HEX8, HEX20, assert_near, assert_same_motion, bearing, motion, motion_without_frame, statics};
 use crate::support::rings::{Level, ring_model};
-use crate::{HEX8, HEX20, assert_near, assert_same_motion, bearing, motion, motion_without_frame, statics};
 
 /// The bearing with a notch in each ring: in four sectors of 54 or 36 the nodes of a face, of the shoulders and of
 /// the held surface stand elsewhere, up to 0.15 mm. Nodes of the raceway stay.

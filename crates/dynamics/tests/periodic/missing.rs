@@ -12,12 +12,12 @@ use dynamics::{Backend, Hold, Model, StaticSolver};
 use input::Schedule;
 use mesh::{Facet, Mesh};
 
-use crate::ahead::alone;
-use crate::support::on_threads;
-use crate::support::rings::{Level, ring_model};
-use crate::{
+use super::ahead::alone;
+use super::{
     End, HEX8, SPEED, assert_near, assert_same_motion, bearing, motion, motion_without_frame, statics,
 };
+use crate::support::on_threads;
+use crate::support::rings::{Level, ring_model};
 
 const HEX20: Level = Level::hex20(36, 4, 1, 2);
 

@@ -8,10 +8,10 @@ use dynamics::motion::{Motion, MotionSettings, StepCache};
 use dynamics::{Backend, Hold, Model, RingModel};
 use ring::{BodySettings, Frame, Partner, elastic_body};
 
-use crate::HEX8;
-use crate::missing::keyed;
+use super::HEX8;
+use super::missing::keyed;
+use super::{bearing, twisted};
 use crate::support::{Case, equilibrium};
-use crate::{bearing, twisted};
 
 /// All ways to solve a ring, clamped and in its mean motion.
 fn cases() -> Vec<(&'static str, Model)> {

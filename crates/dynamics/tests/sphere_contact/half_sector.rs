@@ -12,7 +12,7 @@ use solver::{
     SparseVector, Symbolic, TriangularFactor, angular_dissection, expand, restrict, restrict_order,
 };
 
-use crate::sphere::{Rectangle, Sphere};
+use super::sphere::{Rectangle, Sphere};
 use crate::support::graded::graded;
 use crate::support::rings::{Columns, groove, measures, revolved};
 use crate::support::steel;

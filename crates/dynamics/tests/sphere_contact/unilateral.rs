@@ -13,8 +13,8 @@ use std::ops::Range;
 use contact::{BearingGeometry, Side};
 use dense::DenseLu;
 
-use crate::half_sector::{Cell, Raceway};
-use crate::sphere::Sphere;
+use super::half_sector::{Cell, Raceway};
+use super::sphere::Sphere;
 
 /// Rounds of the search: 10 to 12 are usual.
 const MOST_ROUNDS: usize = 100;

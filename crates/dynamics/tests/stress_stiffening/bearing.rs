@@ -7,7 +7,7 @@ use dynamics::motion::{Motion, MotionSettings, MotionState};
 use dynamics::{Backend, ContactMode, Hold, Model, StaticSolution};
 use ring::Frame;
 
-use crate::rpm;
+use super::rpm;
 use crate::support::rings::Level;
 use crate::support::{Case, equilibrium, states_from};
 

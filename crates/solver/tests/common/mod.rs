@@ -1,5 +1,4 @@
 //! Matrices and checks shared by the tests.
-#![allow(dead_code, reason = "each test binary uses its own part")]
 
 use sprs::{CsMat, TriMat};
 

@@ -5,8 +5,8 @@ use mesh::Mesh;
 use solver::cyclic::{Change, CyclicDefect, RowResponses, conjugate_gradients};
 use solver::{CyclicBordered, LinearSolver, ResponseTable, SolverError};
 
+use super::rings::{Ring, SHIFT, loads, rings, steel};
 use crate::common::assert_close;
-use crate::rings::{Ring, SHIFT, loads, rings, steel};
 
 /// The change of the stiffness when the elements `elements` have `factor` times their modulus.
 fn softened(mesh: &Mesh, elements: &[usize], factor: f64) -> Change {

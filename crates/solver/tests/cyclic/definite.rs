@@ -7,8 +7,8 @@ use solver::{
 };
 use sprs::CsMat;
 
+use super::rings::{Ring, rings, steel};
 use crate::common::dense;
-use crate::rings::{Ring, rings, steel};
 
 /// K - s M of the assembled ring, for any s.
 fn assembled(ring: &Ring) -> impl Fn(f64) -> CsMat<f64> {

@@ -3,8 +3,8 @@
 use solver::LinearSolver;
 use solver::cyclic::CyclicBordered;
 
+use super::rings::{loads, rings};
 use crate::common::assert_close;
-use crate::rings::{loads, rings};
 
 /// Section nodes on one line and one beside it, not ascending.
 const LAST: [usize; 4] = [5, 1, 3, 2];

@@ -4,8 +4,8 @@ use dense::DenseCholesky;
 use mesh::Mesh;
 use solver::{Bordered, CyclicBordered, LinearSolver, SolverError};
 
-use crate::common::{self, assert_close};
-use crate::rings::{Ring, SHIFT, loads, rings};
+use super::rings::{Ring, SHIFT, loads, rings};
+use crate::common::assert_close;
 
 /// Takes the resultant force and moment out of nodal loads: subtracts the combination of rigid motions they work on.
 fn balance(mesh: &Mesh, loads: &mut [f64]) {
@@ -126,7 +126,7 @@ fn a_bore_that_follows_five_rigid_dofs_is_a_border() {
             for (q, mode) in found[free.len()..].iter().zip(&modes) {
                 w.iter_mut().zip(mode).for_each(|(w, m)| *w += q * m);
             }
-            let f = common::product(&assembled, &w);
+            let f = crate::common::product(&assembled, &w);
             let mut reduced: Vec<f64> = free.iter().map(|&dof| f[dof]).collect();
             reduced.extend(modes.iter().map(|mode| dot(mode, &f)));
             assert_close(&reduced, rhs, 1e-10);

@@ -3,8 +3,8 @@
 use mesh::{ElementKind, revolve};
 use solver::{Coupling, CyclicMatrix, LinearSolver, SolverError, Symmetry};
 
+use super::rings::{Ring, SHIFT, assert_agree, loads, rings, section};
 use crate::common::assert_close;
-use crate::rings::{Ring, SHIFT, assert_agree, loads, rings, section};
 
 /// Wrong: a step of a free ring would move it otherwise than the assembled matrix does.
 #[test]

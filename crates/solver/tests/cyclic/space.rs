@@ -4,8 +4,8 @@ use mesh::{ElementKind, revolve};
 use solver::cyclic::{HarmonicOperator, NODE_LEN, turned};
 use solver::{LinearSolver, NodalLoad, ResponseTable};
 
-use crate::common::{self, assert_close};
-use crate::rings::{Ring, SHIFT, loads, rings, section};
+use super::rings::{Ring, SHIFT, loads, rings, section};
+use crate::common::assert_close;
 
 /// Wrong: products through the sectors, in nodal and in harmonic space, would not be those of the assembled matrix; or
 /// energies summed in harmonic space would not be those of the nodal vectors.
@@ -15,7 +15,7 @@ fn products_through_the_sector_are_those_of_the_assembled_matrix() {
         let n = ring.mesh.n_dofs();
         let x = loads(n);
         let matrix = ring.assembled(SHIFT);
-        let expected = common::product(&matrix, &x);
+        let expected = crate::common::product(&matrix, &x);
         let shifted = ring.shifted();
         assert_close(&ring.ring.apply(&shifted, &x).unwrap(), &expected, 1e-13);
 
@@ -288,7 +288,7 @@ fn bordered_products_and_turned_fields_are_those_of_nodal_vectors() {
             .flat_map(|k| nodes.iter().flat_map(move |&node| rigid(node)[k]))
             .collect();
         let corner = [4.0, 1.0, 0.5, 1.0, 3.0, -0.7, 0.5, -0.7, 2.0];
-        let mut expected = common::product(&ring.assembled(SHIFT), &x[..n]);
+        let mut expected = crate::common::product(&ring.assembled(SHIFT), &x[..n]);
         for (column, q) in border.chunks_exact(n).zip(&x[n..]) {
             expected.iter_mut().zip(column).for_each(|(y, b)| *y += b * q);
         }

@@ -2,8 +2,8 @@
 
 use fem::{StressRecovery, rigid_modes};
 
+use super::rings::{Ring, couplings, loads, rings, steel};
 use crate::common::assert_close;
-use crate::rings::{Ring, couplings, loads, rings, steel};
 
 /// Stress of a displacement field by the weights of one sector, and element by element.
 fn both(ring: &Ring, u: &[f64]) -> [Vec<[f64; 6]>; 2] {

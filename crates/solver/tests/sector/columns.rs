@@ -3,8 +3,8 @@
 use mesh::ElementKind;
 use solver::{Bordered, LinearSolver, SectorBordered, SparseVector, solve_refined};
 
+use super::rings::{Held, Problem, irregular, ring};
 use crate::common::{Numbers, relative_error};
-use crate::rings::{Held, Problem, irregular, ring};
 
 /// From 16 sectors on the interface is reduced cyclically: powers of two, odd numbers at several levels, and, with 48
 /// sectors of linear elements, sectors without an inside.

@@ -4,9 +4,9 @@ use dense::DenseCholesky;
 use mesh::ElementKind;
 use solver::{LinearSolver, solve_refined};
 
+use super::refined::refined;
+use super::rings::{Held, Problem, irregular, ring};
 use crate::common::{Numbers, dense, relative_error};
-use crate::refined::refined;
-use crate::rings::{Held, Problem, irregular, ring};
 
 const KINDS: [ElementKind; 3] = [ElementKind::Hex8, ElementKind::Hex20, ElementKind::Tet10];
 /// Sectors of a ring of 16 layers: with 16, no sector of linear elements has an interior.

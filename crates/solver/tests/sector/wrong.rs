@@ -5,7 +5,7 @@ use std::borrow::Cow;
 use mesh::ElementKind;
 use solver::{SectorLayout, SolverError};
 
-use crate::rings::{Held, Problem, ring};
+use super::rings::{Held, Problem, ring};
 
 /// Wrong: a scene that asks for more sectors than there are elements would panic.
 #[test]

@@ -5,19 +5,17 @@ mod costs;
 mod loaded;
 mod refined;
 mod resolved;
-#[path = "../support/mod.rs"]
-mod support;
 
 use std::f64::consts::PI;
 use std::sync::Arc;
 
+use crate::support::Case;
+use crate::support::rings::Level;
 use contact::near_field::in_axes;
 use contact::{LoadedPatch, NearField, RingPoint, SemiAxes, Side};
 use dynamics::{ContactMode, Model, RingModel};
 use fem::stress::von_mises;
 use loaded::Ring;
-use support::Case;
-use support::rings::Level;
 
 const FORCE: f64 = 500.0;
 const ANGLE: f64 = 0.34;

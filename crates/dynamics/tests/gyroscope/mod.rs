@@ -1,9 +1,9 @@
 //! A flexible ring that turns and is not held by any contact: the laws of a free gyroscope.
 
 mod schemes;
-#[path = "../support/mod.rs"]
-mod support;
 
+use crate::support::rings::Level;
+use crate::support::{Case, states_from};
 use contact::Side;
 use dynamics::effects::FrameRotation;
 use dynamics::kinematics::Speed;
@@ -11,8 +11,6 @@ use dynamics::model::ShaftInertia;
 use dynamics::motion::{Motion, MotionSettings, MotionState, StepCache};
 use dynamics::{ContactMode, Hold, Model, ShaftDof};
 use ring::Frame;
-use support::rings::Level;
-use support::{Case, states_from};
 
 const SMALL: Level = Level::hex8(54, 6, 1, 2);
 /// A ring for very many steps.
@@ -344,8 +342,8 @@ fn a_shaft_tilts_far_as_a_top() {
         let rate = radius * nutation;
         let exact = |t: f64| top([2e-4 * rate, 0.0, 3e-4 * speed.at(0.0)], t / 2e-4);
         let off = |state: &MotionState, t: f64| {
-            let axis = support::finite::times(
-                &support::finite::rotation([state.shaft[3], state.shaft[4]]),
+            let axis = crate::support::finite::times(
+                &crate::support::finite::rotation([state.shaft[3], state.shaft[4]]),
                 [0.0, 0.0, 1.0],
             );
             let exact = exact(t);
@@ -409,7 +407,7 @@ fn an_elastic_ring_tilts_far_as_a_top() {
             let settings = MotionSettings::conserving(time / f64::from(n), speed.clone());
             let states = fly(&model, settings, [0.0, 0.0, 0.0, rate, 0.0], n as usize);
             let tilt = [3, 4].map(|i| states[n as usize].shaft[i]);
-            support::finite::times(&support::finite::rotation(tilt), [0.0, 0.0, 1.0])
+            crate::support::finite::times(&crate::support::finite::rotation(tilt), [0.0, 0.0, 1.0])
         });
         let off = |i: usize| ((4.0 * found[1][i] - found[0][i]) / 3.0 - exact[i]) / 1.5e-3;
         let limit = off(0).hypot(off(1));
@@ -424,7 +422,7 @@ fn top(l: [f64; 3], time: f64) -> [f64; 3] {
     let k = l.map(|l| l / size);
     let (sin, cos) = (size * time).sin_cos();
     let start = [0.0, 0.0, 1.0];
-    let turned = support::finite::cross(k, start);
+    let turned = crate::support::finite::cross(k, start);
     [0, 1, 2].map(|i| cos * start[i] + sin * turned[i] + (1.0 - cos) * k[2] * k[i])
 }
 

@@ -6,12 +6,12 @@ mod motion;
 mod shaft;
 mod shared;
 mod smooth;
-#[path = "../support/mod.rs"]
-mod support;
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
+use crate::support::rings::{Level, ring};
+use crate::support::{Case, equilibrium, on_threads, steel};
 use body::{BesideRing, BodySeat, SeatBasis, SeatCylinder, SeatSpace, SeatTie, Surrounding};
 use contact::Side;
 use dynamics::motion::{Motion, MotionState, StepCache};
@@ -20,8 +20,6 @@ use fem::Material;
 use mesh::{Facet, Mesh, Origin};
 use ring::statics::RingSolver;
 use ring::{BodySettings, Frame, Partner, elastic_body, require_stiffening};
-use support::rings::{Level, ring};
-use support::{Case, equilibrium, on_threads, steel};
 
 const LEVEL: Level = Level::hex8(36, 4, 1, 2);
 

@@ -1,8 +1,6 @@
 //! Rings that the stress of their turning stiffens.
 
 mod bearing;
-#[path = "../support/mod.rs"]
-mod support;
 
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
@@ -19,7 +17,7 @@ use ring::{
     PortForces, RingState, Settling, StepScheme, elastic_body, require_stiffening,
 };
 
-use support::rings::Level;
+use crate::support::rings::Level;
 
 /// Mean radius of the thin ring, m.
 const RADIUS: f64 = 50e-3;
@@ -64,7 +62,7 @@ fn plain_ring(mean_radius: f64, height: f64, hold: Hold) -> RingModel {
     let section = Section::new(points, quads, &groups).unwrap();
     RingModel {
         mesh: revolve(&section, 72, ElementKind::Hex20, &[]).unwrap(),
-        material: support::steel(),
+        material: crate::support::steel(),
         hold,
         held_group: "bore",
         groove: Groove {
@@ -335,7 +333,7 @@ fn a_turning_ring_yields_less_to_an_oval_load() {
         held / (1.0 + held)
     };
     let plain = plain_ring(27e-3, 4.2e-3, Hold::MeanMotion);
-    let real = support::rings::ring(Side::Inner, Level::hex20(36, 6, 1, 2), Hold::MeanMotion);
+    let real = crate::support::rings::ring(Side::Inner, Level::hex20(36, 6, 1, 2), Hold::MeanMotion);
     for (speed, expected) in [(20e3, 0.016), (40e3, 0.059)] {
         let [plain, real] = [&plain, &real].map(|of| less(of, speed));
         println!(
@@ -388,7 +386,7 @@ fn standing(of: &RingModel, frame: Frame, n: f64, speed: f64) -> f64 {
 fn a_shape_that_stands_in_space_is_that_of_the_equilibrium() {
     let (radius, height, speed) = (27e-3, 4.2e-3, rpm(40e3));
     let thin = plain_ring(radius, height, Hold::Free);
-    let real = support::rings::ring(Side::Inner, Level::hex8(54, 6, 1, 2), Hold::Free);
+    let real = crate::support::rings::ring(Side::Inner, Level::hex8(54, 6, 1, 2), Hold::Free);
     for n in [2.0, 3.0] {
         let steel = thin.material;
         let strain = steel.density * (speed * radius).powi(2) / steel.young_modulus;
@@ -412,7 +410,7 @@ fn a_shape_that_stands_in_space_is_that_of_the_equilibrium() {
 /// that harmonics solve, and of one with one sparse factor.
 #[test]
 fn the_stress_is_in_the_forecast_of_memory() {
-    let of = support::rings::ring(Side::Inner, Level::hex8(36, 4, 1, 1), Hold::Clamped);
+    let of = crate::support::rings::ring(Side::Inner, Level::hex8(36, 4, 1, 1), Hold::Clamped);
     for backend in [Backend::Auto, Backend::Sparse] {
         let [with, without] = [Frame::Stiffened, Frame::Turning].map(|frame| {
             let body = elastic_body("inner", &of, settings(backend, frame)).unwrap();
@@ -433,7 +431,7 @@ fn the_stress_is_in_the_forecast_of_memory() {
 /// Wrong: a ring that its stress cannot stiffen would move as if there were none.
 #[test]
 fn a_ring_in_sectors_is_refused() {
-    let of = support::rings::ring(Side::Inner, Level::hex8(36, 4, 1, 1), Hold::Clamped);
+    let of = crate::support::rings::ring(Side::Inner, Level::hex8(36, 4, 1, 1), Hold::Clamped);
     let sectors = Backend::Sector(Sectors::default());
     let error = elastic_body("inner", &of, settings(sectors, Frame::Stiffened))
         .err()

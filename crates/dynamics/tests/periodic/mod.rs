@@ -4,11 +4,11 @@ mod ahead;
 mod defect;
 mod missing;
 mod rigid_motion;
-#[path = "../support/mod.rs"]
-mod support;
 
 use std::sync::Arc;
 
+use crate::support::rings::{Level, ring_model};
+use crate::support::{Case, on_threads};
 use contact::{Meridian, Side};
 use dynamics::effects::FrameRotation;
 use dynamics::kinematics::Speed;
@@ -18,8 +18,6 @@ use dynamics::{
     Backend, ContactMode, Hold, Model, ModesSettings, NodalStress, PointStress, RingSupport, StaticSolution,
     StaticSolver,
 };
-use support::rings::{Level, ring_model};
-use support::{Case, on_threads};
 
 const HEX8: Level = Level::hex8(54, 6, 1, 2);
 const HEX20: Level = Level::hex20(36, 4, 1, 1);
@@ -230,7 +228,7 @@ fn assert_same_motion(found: &End, expected: &End, tolerance: f64) {
 /// Wrong: results would drift apart over many steps. 500 steps of 1e-5 s at 1800 rpm with the turning frame, all
 /// displacements, forces and motions of a step to 1e-10 of the largest.
 #[test]
-#[ignore = "takes minutes with the sparse factor: cargo test --release -p raceway-dynamics --test periodic -- \
+#[ignore = "takes minutes with the sparse factor: cargo test --release -p raceway-dynamics --test tests periodic -- \
             --ignored"]
 fn five_hundred_steps_agree_with_sparse_factors() {
     let level = Level::hex8(90, 8, 2, 3);

@@ -1,8 +1,5 @@
 //! Free balls on rigid rings against closed forms: rolling, sliding, driven and thrown balls, thrust, ledgers.
 
-#[path = "../support/mod.rs"]
-mod support;
-
 mod bearings;
 mod cage;
 mod closed_forms;

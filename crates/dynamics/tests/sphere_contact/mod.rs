@@ -4,16 +4,14 @@
 
 mod half_sector;
 mod sphere;
-#[path = "../support/mod.rs"]
-mod support;
 mod unilateral;
 
+use crate::support::rings::Level;
+use crate::support::{Case, equilibrium};
 use contact::Side;
 use dynamics::{ContactMode, Hold, Model, StaticSolution};
 use half_sector::{Place, Raceway};
 use sphere::Sphere;
-use support::rings::Level;
-use support::{Case, equilibrium};
 use unilateral::{Found, solve};
 
 /// Where the elements of a half sector must be small.
@@ -44,7 +42,7 @@ fn off(program: &StaticSolution, found: &Found) -> [f64; 3] {
 #[test]
 #[ignore = "half sectors of 130 000 dofs: minutes, 2 GB; scripts/test-slow runs it"]
 fn the_program_agrees_with_a_contact_computed_without_hertz() {
-    let steel = support::steel();
+    let steel = crate::support::steel();
     for hold in [Hold::Clamped, Hold::MeanMotion] {
         for (thrust, bounds) in [
             (500.0, [2e-3, 1e-3, 0.01]),
@@ -86,7 +84,7 @@ fn on_half_spaces_the_cells_find_hertz() {
     let model = Case::axial(thrust).rigid();
     let program = equilibrium(&model);
     let places = places(&model, &program);
-    let sphere = Sphere::half_space(&support::steel(), 0.5 * model.geometry.ball_diameter);
+    let sphere = Sphere::half_space(&crate::support::steel(), 0.5 * model.geometry.ball_diameter);
     let raceways = Side::BOTH.map(|side| Raceway::on_half_space(side, places[side.index()], 1.0));
     let found = solve(&model.geometry, &raceways, &sphere, thrust);
     let off = off(&program, &found);
