@@ -88,6 +88,8 @@ pub struct Listed {
     pub angle_note: String,
     /// Group of radial clearance, of a deep groove bearing.
     pub group: &'static str,
+    /// Where the group is from.
+    pub group_note: String,
 }
 
 /// Reads a designation, or says what was expected.
@@ -116,6 +118,12 @@ pub fn listed(designation: &str) -> Result<Listed, String> {
         .split(|c: char| !c.is_ascii_alphanumeric())
         .filter(|word| !word.is_empty())
         .collect();
+    if let Some(other) = words.iter().find(|word| listed(word).is_ok()) {
+        return Err(format!(
+            "{designation:?} names two bearings, {digits} and {other}; expected one: make a scene of each"
+        ));
+    }
+    let (group, group_note) = group_of(&words);
     let (degrees, angle_note) = match series.starts_with('7') {
         false => (None, String::new()),
         true => {
@@ -129,7 +137,8 @@ pub fn listed(designation: &str) -> Result<Listed, String> {
         width,
         degrees,
         angle_note,
-        group: group_of(&words),
+        group,
+        group_note,
     })
 }
 
@@ -149,14 +158,28 @@ fn angle_of(word: Option<&str>) -> (f64, String) {
     (40.0, format!("ESTIMATE, suffix {word} is not known; {LETTERS}"))
 }
 
-/// The group of clearance among the words of a suffix: C3 alone, or behind other letters as in ZZC3.
-fn group_of(words: &[&str]) -> &'static str {
+/// The group of clearance among the words of a suffix, C3 alone or behind other letters as in ZZC3, and where it is from.
+fn group_of(words: &[&str]) -> (&'static str, String) {
     let says = |group: &str, word: &str| {
         let after = word.split_once(group).map(|(_, after)| after);
         after.is_some_and(|after| !after.starts_with(|c: char| c.is_ascii_digit()))
     };
     let of_words = |group: &&&str| words.iter().any(|word| **group != "N" && says(group, word));
-    GROUPS.iter().find(of_words).copied().unwrap_or("N")
+    if let Some(group) = GROUPS.iter().find(of_words) {
+        return (group, format!("the middle of group {group}, ISO 5753-1"));
+    }
+    // C1 and C9 look like a group; CM is that of makers for electric motors.
+    let is_clearance = |word: &&&str| {
+        let digit = |c: char| c.is_ascii_digit();
+        **word == "CM" || word.split('C').skip(1).any(|after| after.starts_with(digit))
+    };
+    let note = match words.iter().find(is_clearance) {
+        Some(word) => format!(
+            "ESTIMATE, suffix {word} is no group of ISO 5753-1 that is known: C2, C3, C4, C5; that of N"
+        ),
+        None => "the middle of group N, ISO 5753-1".to_owned(),
+    };
+    ("N", note)
 }
 
 /// Middle of a group of radial clearance, mm.
@@ -253,6 +276,28 @@ mod tests {
                 (group, clearance),
                 "{designation}"
             );
+            assert_eq!(
+                found.group_note,
+                format!("the middle of group {group}, ISO 5753-1")
+            );
         }
+    }
+
+    /// Wrong: a clearance that nobody knows would pass for that of group N, the second of two bearings for a suffix.
+    #[test]
+    fn an_unknown_clearance_and_a_second_bearing_are_named() {
+        for (designation, word) in [("6206/CM", "CM"), ("6010 C9", "C9"), ("6203-2RSC1", "2RSC1")] {
+            assert_eq!(
+                listed(designation).unwrap().group_note,
+                format!(
+                    "ESTIMATE, suffix {word} is no group of ISO 5753-1 that is known: C2, C3, C4, C5; that of N"
+                )
+            );
+        }
+        let text = listed("7208 6206").err().unwrap();
+        assert_eq!(
+            text,
+            "\"7208 6206\" names two bearings, 7208 and 6206; expected one: make a scene of each"
+        );
     }
 }

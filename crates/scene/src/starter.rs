@@ -170,7 +170,7 @@ fn kind_of(
             Some(degrees) => (BearingKind::Angular(degrees), listed.angle_note.clone()),
             None => (
                 BearingKind::Deep(clearance_of(bore, listed.group)),
-                format!("the middle of group {}, ISO 5753-1", listed.group),
+                listed.group_note.clone(),
             ),
         },
     })
