@@ -121,6 +121,39 @@ fn a_pair_moves_in_one_housing_and_goes_on_to_the_same_bits() {
     assert_moves_and_goes_on(&dir, "moving.toml", &FEW);
 }
 
+/// Wrong: bearings that feel each other through a housing would have other equilibria over time on other numbers of
+/// threads, or after a resume between two instants from which others start.
+#[test]
+fn a_pair_turns_in_one_housing_and_goes_on_to_the_same_bits() {
+    let dir = coarse(&[SCENE]);
+    let turning = "[speed]\ninner = \"3000 rpm\"\n[quasi_static]\nduration = \"2.2 ms\"\nstep = \"0.2 ms\"\n";
+    dir.write(
+        "turning.toml",
+        format!("{}\n{turning}", without_analysis(&dir, SCENE)),
+    );
+    for (threads, out) in [("1", "whole"), ("4", "cut")] {
+        let run = ["run", "turning.toml", "--out", out, "--threads", threads];
+        let run = dir.raceway(&[&run[..], &FEW].concat());
+        assert_eq!(run.code, Some(0), "{}", run.stderr);
+    }
+    let assert_same = || {
+        for table in [
+            "shaft.csv",
+            "front/balls.csv",
+            "front/seat_outer.csv",
+            "rear/balls.csv",
+        ] {
+            let [whole, cut] = ["whole", "cut"].map(|out| dir.text(&format!("{out}/{table}")));
+            assert!(whole == cut, "{table}");
+        }
+    };
+    assert_same();
+    std::fs::remove_file(dir.path("cut/summary.json")).unwrap();
+    let resumed = dir.raceway(&["resume", "cut", "--step", "5", "--threads", "2"]);
+    assert_eq!(resumed.code, Some(0), "{}", resumed.stderr);
+    assert_same();
+}
+
 /// If this failed, the matrix of the shaft would not have what bearings do to each other through their housing, or a
 /// user would take that of a bearing for all of it. The nose gives way as between two equilibria of nearby loads.
 #[test]

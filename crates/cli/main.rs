@@ -42,6 +42,7 @@ mod several_instant;
 mod several_ledger;
 mod several_modes;
 mod several_motion;
+mod several_quasi_end;
 mod several_quasi_state;
 mod several_quasi_static;
 mod several_read;

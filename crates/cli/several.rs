@@ -13,6 +13,7 @@ use results::seat::{SeatSummaries, SeatSummary};
 use results::snapshot::Snapshot;
 use results::survey::require_same_scene;
 use scene::{Analysis, BuildError, Rings, Scene, SeveralScene};
+use timer::Laps;
 
 use crate::progress::Progress;
 
@@ -51,6 +52,13 @@ pub fn make_folder(scene: &SeveralScene, dir: &Path) -> Result<ListStart, Failur
         say_folder(dir);
     }
     Ok(start)
+}
+
+/// Adds the wall time of a point, by type of bearing, to that of others.
+pub fn add_laps(sums: &mut Vec<Laps>, of_point: &[Laps]) {
+    sums.resize_with(of_point.len(), Laps::default);
+    let pairs = sums.iter_mut().zip(of_point);
+    pairs.for_each(|(sum, laps)| sum.merge(laps));
 }
 
 /// The numbers of a bearing at rest.

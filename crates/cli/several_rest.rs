@@ -26,8 +26,8 @@ use crate::options::{Limits, SweepPart};
 use crate::points_ahead::{Grouping, PointAnswer, PointsAhead};
 use crate::progress::Progress;
 use crate::several::{
-    SeveralPoint, at_point, column, make_folder, placed, points, require_same_list, say_types, snapshot,
-    solving, stage_text, warnings_at, words_of,
+    SeveralPoint, add_laps, at_point, column, make_folder, placed, points, require_same_list, say_types,
+    snapshot, solving, stage_text, warnings_at, words_of,
 };
 use crate::several_files::close_bearing;
 use crate::several_read::{ReadList, read_list, require_memory_of_all};
@@ -159,9 +159,7 @@ impl SolvedLists {
         let AssemblyPoint { solution, laps, .. } = point;
         self.warnings.extend(warnings_at(at, &assembly, &solution));
         self.iterations += solution.shaft.iterations;
-        self.laps.resize_with(laps.len(), Laps::default);
-        let pairs = self.laps.iter_mut().zip(&laps);
-        pairs.for_each(|(sum, laps)| sum.merge(laps));
+        add_laps(&mut self.laps, &laps);
         (self.assembly, self.last) = (assembly, Some(solution));
         self.n += 1;
     }

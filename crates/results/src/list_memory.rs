@@ -105,13 +105,15 @@ pub fn forecast_list(analysis: &Analysis, bearings: &[BearingMemory<'_>]) -> (us
     (with_all(rest), steps_of(analysis, bearings).map(with_all))
 }
 
-/// What the load cases of a sweep hold beside the rings, of which several are solved at the same time, bytes.
+/// What load cases and instants hold beside the rings, of which several are solved at the same time, bytes.
 fn points_of(analysis: &Analysis, bearings: &[BearingMemory<'_>]) -> usize {
-    let Analysis::Sweep(sweep) = analysis else {
-        return 0;
+    let n_points = match analysis {
+        Analysis::Sweep(sweep) => sweep.points.len() as u64,
+        Analysis::QuasiStatic(settings) => 1 + settings.n_steps,
+        _ => return 0,
     };
     let listed = bearings.iter().map(|bearing| (bearing.rest, bearing.model));
-    bytes_of_points(listed, sweep.points.len() as u64)
+    bytes_of_points(listed, n_points)
 }
 
 /// Forecast of the steps of a motion without bodies, bytes; None where there is none.

@@ -158,7 +158,8 @@ fn angle_of(word: Option<&str>) -> (f64, String) {
     (40.0, format!("ESTIMATE, suffix {word} is not known; {LETTERS}"))
 }
 
-/// The group of clearance among the words of a suffix, C3 alone or behind other letters as in ZZC3, and where it is from.
+/// The group of clearance among the words of a suffix, C3 alone or behind other letters as in ZZC3, and where it is
+/// from.
 fn group_of(words: &[&str]) -> (&'static str, String) {
     let says = |group: &str, word: &str| {
         let after = word.split_once(group).map(|(_, after)| after);
