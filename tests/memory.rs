@@ -283,3 +283,30 @@ fn the_forecast_counts_the_grids_of_real_surfaces() {
         "{forecast} bytes, measured {measured}"
     );
 }
+
+/// Wrong: forces 5 % off and more would come without a word from a ring with an element or two a ball. 18 balls, whose
+/// patches are two elements in semi-axis, a quadratic one counting twice.
+#[test]
+fn a_ring_of_too_few_elements_for_its_balls_is_named() {
+    for (sectors, kind, few) in [
+        (24, ElementKind::Hex8, Some((36, 108))),
+        (36, ElementKind::Hex8, None),
+        (18, ElementKind::Hex20, None),
+    ] {
+        let dir = rings(sectors, kind);
+        let told = dir.raceway(&["check", "scene.toml"]);
+        assert_eq!(told.code, Some(0), "{}", told.stderr);
+        let lines = (told.stdout.lines()).filter(|line| line.contains("elements round its raceway"));
+        let lines: Vec<&str> = lines.collect();
+        assert_eq!(lines.len(), if few.is_some() { 2 } else { 0 }, "{}", told.stdout);
+        let Some((least, better)) = few else { continue };
+        for side in ["inner", "outer"] {
+            let expected = format!(
+                "mesh {side}.msh of the {side} ring has {sectors} elements round its raceway for 18 balls: the patch \
+                 over which the force of a ball is spread reaches the next one, and forces may be off by more than 5 \
+                 %; expected at least {least}, better {better}"
+            );
+            assert!(lines.iter().any(|line| line.contains(&expected)), "{lines:?}");
+        }
+    }
+}

@@ -139,3 +139,41 @@ fn check_refuses_a_mass_that_is_not_positive_where_the_body_moves() {
     let at_rest = check("[static]");
     assert_eq!(at_rest.code, Some(0), "{}", at_rest.stderr);
 }
+
+/// Wrong: a ring in its seat would turn about its axis without inertia over the speed. Closed form: a spring against
+/// the moments of inertia of node and ring, that of the ring from its mesh. Its elasticity is 2e-4 of the frequency.
+#[test]
+fn a_ring_in_its_seat_turns_with_its_polar_moment() {
+    let dir = delivered();
+    write_springs(&dir);
+    let text = scene(&dir, SPRUNG, [AXIAL, "[static]"]);
+    let heavy = "mass = \"3 kg\"\ntransverse_inertia = \"8e-3 kg m2\"\npolar_inertia = \"6e-3 kg m2\"\n";
+    assert!(!text.contains("\nmass = \"3"));
+    let heavy = text.replace("load_point =", &format!("{heavy}load_point ="));
+    dir.write("springs.toml", heavy);
+    let arguments = [
+        "campbell",
+        "springs.toml",
+        "--speeds",
+        "0..0:1",
+        "--number",
+        "30",
+        "--out",
+        "c",
+    ];
+    let run = dir.raceway(&arguments);
+    assert_eq!(run.code, Some(0), "{}", run.stderr);
+    let ring = mesh::read_msh(&dir.path("meshes/6010_outer.msh"), 1e-3).unwrap();
+    let mass = fem::assemble_mass(&ring, &fem::Material::new(207e9, 0.3, 7800.0).unwrap()).unwrap();
+    let turn: Vec<f64> = ring.nodes.iter().flat_map(|[x, y, _]| [-y, *x, 0.0]).collect();
+    let of_ring: f64 = mass.iter().map(|(m, (i, j))| turn[i] * m * turn[j]).sum();
+    let inertia = 1e-3 * INERTIA[5] + of_ring;
+    let expected = (1e-3 * SPRINGS[5] / inertia).sqrt() / std::f64::consts::TAU;
+    let found = Table::read(&dir, "c/campbell.csv").column("frequency_hz");
+    let near = found
+        .iter()
+        .map(|f| (f / expected - 1.0).abs())
+        .fold(1.0, f64::min);
+    println!("{expected} {of_ring:e} {near:e} {found:?}");
+    assert!(near < 1e-3, "{expected}: {found:?}");
+}

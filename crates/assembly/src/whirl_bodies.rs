@@ -16,7 +16,7 @@
 //! ```
 //!
 //! A ring in a seat has the inertia of a rigid one that moves with the mean motion of the seat, in the sense of least
-//! squares over its area.
+//! squares over its area, and turns about z as that does.
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -87,9 +87,12 @@ pub struct WhirlSeat {
     pub functions: Range<usize>,
     /// Inertia of the ring about the place of the bearing.
     pub inertia: RigidInertia,
-    /// Mean motion x, y, z, tilt x, tilt y of the ring by functions, `[5][functions]` flat.
+    /// Mean motion x, y, z, tilt x, tilt y, turn about z of the ring by functions, `[6][functions]` flat.
     pub mean: Vec<f64>,
 }
+
+/// Motions of a ring in a seat.
+pub const N_MEAN: usize = N_SHAFT + 1;
 
 /// A joint of a ring with a body.
 struct WhirlJoint<'m> {
@@ -400,6 +403,7 @@ impl WhirlJoint<'_> {
                 [0.0, 0.0, 1.0],
                 [0.0, -z, y],
                 [z, 0.0, -x],
+                [-y, x, 0.0],
             ];
             of_motion[motion]
         };
@@ -407,20 +411,20 @@ impl WhirlJoint<'_> {
             let field: Vec<f64> = ring.mesh.nodes.iter().flat_map(|x| rigid(*x, motion)).collect();
             functions.measure(&field)
         };
-        let motions: Vec<Vec<f64>> = (0..N_SHAFT).map(measured).collect();
+        let motions: Vec<Vec<f64>> = (0..N_MEAN).map(measured).collect();
         let weighted: Vec<Vec<f64>> = motions.iter().map(|b| functions.integrals(b)).collect();
         let product = |k: usize| -> f64 {
-            let pairs = motions[k / N_SHAFT].iter().zip(&weighted[k % N_SHAFT]);
+            let pairs = motions[k / N_MEAN].iter().zip(&weighted[k % N_MEAN]);
             pairs.map(|(a, b)| a * b).sum()
         };
-        let squares: Vec<f64> = (0..N_SHAFT * N_SHAFT).map(product).collect();
-        let factor = DenseCholesky::factor(N_SHAFT, &squares);
+        let squares: Vec<f64> = (0..N_MEAN * N_MEAN).map(product).collect();
+        let factor = DenseCholesky::factor(N_MEAN, &squares);
         let factor = factor.map_err(|source| AssemblyError::Matrix { source })?;
-        let mut mean = vec![0.0; N_SHAFT * n];
+        let mut mean = vec![0.0; N_MEAN * n];
         for function in 0..n {
             let mut own: Vec<f64> = weighted.iter().map(|row| row[function]).collect();
             factor.solve(&mut own, 1);
-            (0..N_SHAFT).for_each(|k| mean[n * k + function] = own[k]);
+            (0..N_MEAN).for_each(|k| mean[n * k + function] = own[k]);
         }
         Ok(mean)
     }

@@ -8,7 +8,7 @@ use dynamics::stiffness::N_SHAFT;
 use dynamics::whirl::{ShaftForms, ShaftRow, TurningShaft, WhirlMatrices};
 use ring::rigid::RigidInertia;
 
-use crate::whirl_bodies::{BodyOnShaft, WhirlBody, WhirlSeat};
+use crate::whirl_bodies::{BodyOnShaft, N_MEAN, WhirlBody, WhirlSeat};
 use crate::whirl_rows::{RowPlaces, WhirlBearing, WhirlShaft};
 
 /// A row over all that is kept.
@@ -147,15 +147,21 @@ impl<'p> KeptRows<'p> {
         }
         for seat in &body.seats {
             let bearing = &bearings[seat.bearing];
-            let mut motion = mean_motion(n, seat, &seats);
+            let [x, y, z, tilt_x, tilt_y, turn] = mean_motion(n, seat, &seats);
+            let mut motion = [x, y, z, tilt_x, tilt_y];
             match body.on_shaft {
                 Some(_) => {
+                    // Beside the shaft, whose turning is given.
+                    add_square(n, seat.inertia.polar, &[turn], &mut self.forms.mass);
                     for (row, with_shaft) in motion.iter_mut().zip(self.place(bearing)) {
                         row.iter_mut().zip(with_shaft).for_each(|(sum, x)| *sum += x);
                     }
                     self.add_turning(&seat.inertia, motion, bearing.way);
                 }
-                None => add_inertia(n, &seat.inertia, &motion, &mut self.forms.standing),
+                None => {
+                    add_square(n, seat.inertia.polar, &[turn], &mut self.forms.standing);
+                    add_inertia(n, &seat.inertia, &motion, &mut self.forms.standing);
+                }
             }
         }
     }
@@ -240,10 +246,10 @@ fn kept_rows(n: usize, body: &BodyOnShaft, first: usize, forces: &[f64]) -> Vec<
 }
 
 /// Mean motion of the ring in a seat, of the motion of all functions of its body.
-fn mean_motion(n: usize, seat: &WhirlSeat, functions: &[f64]) -> [KeptRow; N_SHAFT] {
+fn mean_motion(n: usize, seat: &WhirlSeat, functions: &[f64]) -> [KeptRow; N_MEAN] {
     let own = &functions[n * seat.functions.start..n * seat.functions.end];
     let width = seat.functions.len();
-    [0, 1, 2, 3, 4].map(|k| {
+    std::array::from_fn(|k| {
         let mut sum = vec![0.0; n];
         for (a, row) in seat.mean[width * k..width * (k + 1)]
             .iter()

@@ -15,6 +15,7 @@ use dynamics::{Model, RingModel};
 use input::{DENSITY, LENGTH, Quantity, STRESS};
 
 use crate::build::{coverages, torus};
+use crate::coarse_round::reaches_next_ball;
 use crate::resolution::unresolved;
 use crate::section_record::unrecorded;
 use crate::surfaces::track_radius;
@@ -51,6 +52,7 @@ pub fn doubts(scene: &Scene, model: &Model) -> Vec<String> {
         if let (Some(ring), Some(body)) = (&model.rings[side.index()], &table.body) {
             let path = body.mesh.display().to_string();
             doubt_size(scene, side, ring, &path, &mut lines);
+            lines.extend(reaches_next_ball(model, side, ring, &path));
             lines.extend(unrecorded(scene, side, body, table.section.as_ref()));
             if body.is_partial {
                 say_parts(ring, &path, &mut lines);

@@ -4,6 +4,7 @@
 //! constructs the model; [`build_meshes`] makes meshes that it describes. It is the only crate that names TOML.
 
 mod build;
+mod coarse_round;
 mod designations;
 mod doubts;
 mod error;

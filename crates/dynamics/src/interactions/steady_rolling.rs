@@ -94,8 +94,11 @@ const TOLERANCE: f64 = 1e-12;
 const ACCEPTED: f64 = 1e-8;
 /// Steps before giving up.
 const MOST_STEPS: usize = 400;
-/// Factors of the slip of creep that lead to a steady state which is far away.
-const SOFTER: [f64; 8] = [3000.0, 1000.0, 300.0, 100.0, 30.0, 10.0, 3.0, 1.0];
+/// Factor of the slip of creep from which the way to a steady state that is far away begins, by which it falls, and the
+/// least such factor.
+const SOFTEST: f64 = 3000.0;
+const SOFTER: f64 = 3.0;
+const LEAST_SOFTER: f64 = 1.001;
 /// First step, s, the longest, with which inertia is nothing, and the least.
 const FIRST_STEP: f64 = 1e-4;
 const LONGEST_STEP: f64 = 1e6;
@@ -267,16 +270,17 @@ impl SteadyBall<'_> {
         (sum, slope)
     }
 
-    /// The steady state from `y`, led by creep that is softer at first; `held` keeps the speed round the axis.
-    fn settle(&self, y: [f64; N], small: [f64; 2], held: bool) -> Result<[f64; N], f64> {
-        if let Ok(found) = self.step_on(y, small, held) {
-            return Ok(found);
-        }
-        let (mut y, mut last) = (y, Ok(y));
-        for factor in SOFTER {
-            last = self.step_on(y, small.map(|slip| factor * slip), held);
-            if let Ok(found) = last {
-                y = found;
+    /// The steady state from `y`, led by creep that is softer at first, in steps as large as it bears; `held` keeps the
+    /// speed round the axis.
+    fn settle(&self, mut y: [f64; N], small: [f64; 2], held: bool) -> Result<[f64; N], f64> {
+        let mut last = self.step_on(y, small, held);
+        let (mut soft, mut step) = (SOFTEST * SOFTER, SOFTER);
+        while last.is_err() && step > LEAST_SOFTER {
+            let next = (soft / step).max(1.0);
+            match self.step_on(y, small.map(|slip| next * slip), held) {
+                Ok(found) if next == 1.0 => last = Ok(found),
+                Ok(found) => (y, soft, step) = (found, next, (step * step).min(SOFTER)),
+                Err(left) => (last, step) = (Err(left), step.sqrt()),
             }
         }
         last
