@@ -265,3 +265,36 @@ fn free_balls_warm_a_bearing_by_their_own_friction() {
         "heat.torque stands beside balls.motion = \"free\", whose friction is a result; remove it",
     );
 }
+
+/// Wrong: with drag of the balls an outer ring that turns would warm the bearing by a part of its power, that of the
+/// torque on the inner ring which stands. Either ring puts in what contacts lose and what drag takes, n k (r w_c)^3
+/// with k = rho C_d pi D_w^2/8.
+#[test]
+fn drag_warms_whichever_ring_turns() {
+    let text = HEAT.replace("speed = \"3000 rpm\"\ntorque = \"0.05 N m\"\n", "");
+    for ring in ["inner", "outer"] {
+        let balls = format!(
+            "[balls]\nmotion = \"free\"\n\n[effects.traction]\nlaw = \"coulomb\"\nfriction = 0.07\n\n\
+             [effects.ball_drag]\ncoefficient = 0.5\ndensity = \"25 kg/m3\"\n\n\
+             [speed]\n{ring} = \"-9000 rpm\"\n\n[heat]"
+        );
+        let dir = scene(&text.replace("[heat]", &balls));
+        let no_radial = ["--set", "effects.radial_force=none"];
+        let heat = [&["heat", "scene.toml", "--out", "out"], &RIGID[..], &no_radial].concat();
+        let outcome = dir.raceway(&heat);
+        assert_eq!(outcome.code, Some(0), "{}", outcome.stderr);
+        let cold = ["inner", "outer", "balls"].map(|body| format!("effects.temperature.{body}=\"20 degC\""));
+        let mut run = [&["run", "scene.toml", "--out", "cold"], &RIGID[..], &no_radial].concat();
+        cold.iter().for_each(|cold| run.extend(["--set", cold]));
+        let outcome = dir.raceway(&run);
+        assert_eq!(outcome.code, Some(0), "{}", outcome.stderr);
+        let shaft = Table::read(&dir, "cold/shaft.csv");
+        let of = |name: &str| shaft.column(name)[0];
+        let orbit = 0.5 * 65.0235e-3 * of("cage_speed_rad_per_s").abs();
+        let drag = 18.0 * 0.5 * 25.0 * 0.5 * std::f64::consts::FRAC_PI_4 * 9e-3f64.powi(2) * orbit.powi(3);
+        let power = of("friction_power_w") + drag;
+        assert!(drag > 0.2 * power, "{ring}: {drag} of {power}");
+        let found = heat_file(&dir, "out");
+        assert_close(ring, number(&found, "/rounds/0/power_w"), power, 1e-3);
+    }
+}

@@ -14,6 +14,7 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, anyhow};
 use clap::Args;
 use comm::print;
+use contact::Side;
 use dynamics::mounting::Clearance;
 use dynamics::{Model, StaticSolution, StaticSolver};
 use results::failure::Failure;
@@ -51,7 +52,7 @@ pub struct HeatCommand {
 /// The bearing in a round.
 #[derive(Clone, Debug, Serialize)]
 struct BearingState {
-    /// Friction torque, N m.
+    /// Friction torque, N m: the power over the speed of the rings against each other.
     torque_n_m: f64,
     /// Part of the oil, N m; only by Palmgren's formula.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -288,10 +289,7 @@ impl WarmBearing<'_> {
             },
             FrictionLaw::FreeBalls => Torque {
                 of_oil: 0.0,
-                of_load: solution
-                    .steady
-                    .as_ref()
-                    .map_or(0.0, |balls| balls.friction().torque_n_m.abs()),
+                of_load: drive_power(scene, solution) / self.speed,
             },
             FrictionLaw::Palmgren {
                 oil_factor,
@@ -319,6 +317,16 @@ impl WarmBearing<'_> {
         };
         (torque.total(), state)
     }
+}
+
+/// Power that the rings put into free balls, W.
+fn drive_power(scene: &Scene, solution: &StaticSolution) -> f64 {
+    let (Some(balls), Some(speeds)) = (&solution.steady, &scene.speed) else {
+        return 0.0;
+    };
+    balls
+        .friction()
+        .drive_power(Side::BOTH.map(|side| speeds.of(side).at(0.0)))
 }
 
 fn print_balance(balance: &Balance<BearingState>, heat: &Heat, speed: f64) {
