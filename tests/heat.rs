@@ -102,6 +102,30 @@ fn a_runaway_is_named_and_is_an_error() {
     assert!(rounds > 1, "{rounds}");
 }
 
+/// Wrong: thick oil, whose friction falls faster than it warms the bearing, would have no steady state, or be taken for
+/// a runaway. The power of the last round is that which flows off, within 0.5 K.
+#[test]
+fn thick_oil_has_its_steady_state() {
+    let oil = "f_0 = 6.0\nf_1 = 6e-4\nviscosity_class = 680\nviscosity_at_100 = \"40 mm2/s\"";
+    let cooled = HEAT
+        .replace("0.4 W/K", "2.0 W/K")
+        .replace("\"2 W/K\"", "\"5 W/K\"");
+    let dir = scene(&cooled.replace("torque = \"0.05 N m\"", oil));
+    let outcome = dir.raceway(&[&["heat", "scene.toml", "--out", "out"], &RIGID[..]].concat());
+    assert_eq!(outcome.code, Some(0), "{}", outcome.stderr);
+    let found = heat_file(&dir, "out");
+    assert_eq!(found["end"], "steady");
+    let rounds = found["rounds"].as_array().unwrap();
+    assert!((4..=10).contains(&rounds.len()), "{}", rounds.len());
+    assert!(number(&found, "/gain") < -1.0);
+    let last = rounds.last().unwrap();
+    for body in 0..2 {
+        let was = last["temperatures_k"][body].as_f64().unwrap();
+        let is = number(&found, &format!("/temperatures_k/{body}"));
+        assert!((was - is).abs() < 0.5, "{was} {is}");
+    }
+}
+
 /// Wrong: what a balance cannot be found with would be guessed.
 #[test]
 fn what_a_balance_lacks_is_said() {

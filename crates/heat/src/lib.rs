@@ -3,7 +3,7 @@
 //!
 //! Each round solves the equilibrium of the scene at its temperatures ([`balance`]), takes the friction of it
 //! ([`torque`], or a torque that the scene gives), and finds the temperatures that this makes ([`network`]). The rings
-//! are factored once. Cost: an equilibrium per round, some five rounds.
+//! are factored once. Cost: an equilibrium per round, some five rounds, up to ten with thick oil.
 
 pub mod balance;
 pub mod network;
@@ -137,8 +137,9 @@ pub fn heat(command: &HeatCommand) -> Result<(), Failure> {
 fn runaway(balance: &Balance<BearingState>, heat: &Heat) -> String {
     let warmest = (0..5).max_by(|a, b| balance.temperatures_k[*a].total_cmp(&balance.temperatures_k[*b]));
     let warmest = warmest.unwrap_or(0);
-    let gain = balance.gain.map_or(String::new(), |gain| {
-        format!(", each round changing temperatures {gain:.2} times as much as the one before")
+    let gain = balance.gain.filter(|gain| *gain > 0.0);
+    let gain = gain.map_or(String::new(), |gain| {
+        format!(", with {gain:.2} W more friction for each W more of heat")
     });
     format!(
         "thermal runaway: after {} rounds, with a body at heat.limit of {:.0} degC, friction makes more heat than \
