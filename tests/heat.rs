@@ -322,3 +322,48 @@ fn drag_warms_whichever_ring_turns() {
         assert_close(ring, number(&found, "/rounds/0/power_w"), power, 1e-3);
     }
 }
+
+/// Wrong: a balance could not have a housing of another material, which holds the outer ring otherwise as it warms up,
+/// nor another reference. The last round beside a run of the scene at these temperatures.
+#[test]
+fn partners_of_a_balance_have_their_own_expansion() {
+    let fit = "[effects.fit.outer]\ninterference = \"15 um\"\nhousing_diameter = \"160 mm\"\n\n[heat]\n\
+               housing_expansion = \"23e-6 /K\"\nreference = \"15 degC\"";
+    let text = HEAT
+        .replace("[heat]", fit)
+        .replace("outer_ambient = \"2 W/K\"", "outer_housing = \"2 W/K\"");
+    let dir = scene(&text.replace(
+        "[static]",
+        "conductance.housing_ambient = \"0.5 W/K\"\n\n[static]",
+    ));
+    let clearance = |arguments: &[&str], out: &str| {
+        let outcome = dir.raceway(&[arguments, &["scene.toml", "--out", out], &RIGID[..]].concat());
+        assert_eq!(outcome.code, Some(0), "{}", outcome.stderr);
+    };
+    clearance(&["heat"], "out");
+    let found = heat_file(&dir, "out");
+    let last = found["rounds"].as_array().unwrap().last().unwrap();
+    let bodies = ["inner", "outer", "balls", "shaft", "housing"].iter().enumerate();
+    let kelvin = |i: usize| last["temperatures_k"][i].as_f64().unwrap();
+    let mut set: Vec<String> = bodies
+        .map(|(i, body)| format!("effects.temperature.{body}=\"{:?} K\"", kelvin(i)))
+        .collect();
+    set.push("effects.temperature.housing_expansion=\"23e-6 /K\"".to_string());
+    set.push("effects.temperature.reference=\"15 degC\"".to_string());
+    let mut run = vec!["run"];
+    set.iter().for_each(|set| run.extend(["--set", set]));
+    clearance(&run, "warm");
+    let summary = crate::util::tables::summary(&dir, "warm");
+    assert_close(
+        "clearance",
+        last["radial_clearance_m"].as_f64().unwrap(),
+        number(&summary, "/clearance/operating/radial_m"),
+        1e-9,
+    );
+    refused(
+        &dir,
+        &["--set", "heat.housing_expansion=\"23 /K\""],
+        2,
+        "heat.housing_expansion is 23 /K; expected at most 1e-3 /K",
+    );
+}

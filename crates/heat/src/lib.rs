@@ -180,7 +180,8 @@ fn check<'a>(scene: &'a Scene, path: &Path) -> Result<&'a Heat, Failure> {
     }
     if scene.effects.temperature.is_some() {
         return Err(anyhow!(
-            "{} has [effects.temperature], which raceway heat finds; remove it, or --set effects.temperature=none",
+            "{} has [effects.temperature], which raceway heat finds; remove it, or --set effects.temperature=none; its \
+             reference and the expansions of shaft and housing are keys of [heat] too",
             path.display()
         )
         .into());
@@ -250,9 +251,8 @@ impl WarmBearing<'_> {
                 celsius.join(", ")
             ))
         };
-        let settings = BODIES.iter().zip(temperatures);
-        let settings = settings.map(|(body, kelvin)| format!("effects.temperature.{body}=\"{kelvin:.9} K\""));
-        let overrides: Vec<String> = self.command.overrides.iter().cloned().chain(settings).collect();
+        let given = self.command.overrides.iter().cloned();
+        let overrides: Vec<String> = given.chain(settings(self.heat, temperatures)).collect();
         let scene = Scene::load(&self.command.scene, &overrides)?;
         let rings = self.model.rings.clone();
         self.model = model_with_rings(&scene, rings).map_err(|error| at(error.into()))?;
@@ -318,6 +318,22 @@ impl WarmBearing<'_> {
         };
         (torque.total(), state)
     }
+}
+
+/// Settings of `[effects.temperature]` at temperatures, K.
+fn settings(heat: &Heat, temperatures: OfBodies) -> Vec<String> {
+    let kelvin = |key: &str, kelvin: f64| format!("effects.temperature.{key}=\"{kelvin:.9} K\"");
+    let bodies = BODIES.iter().zip(temperatures);
+    let bodies = bodies.map(|(body, temperature)| kelvin(body, temperature));
+    let reference = heat.reference.map(|reference| kelvin("reference", reference));
+    let partners = ["shaft", "housing"].iter().zip(heat.partner_expansion);
+    let partners = partners.filter_map(|(body, expansion)| {
+        Some(format!(
+            "effects.temperature.{body}_expansion=\"{:?} /K\"",
+            expansion?
+        ))
+    });
+    bodies.chain(reference).chain(partners).collect()
 }
 
 /// Power that the rings put into free balls, W.
