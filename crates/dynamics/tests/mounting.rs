@@ -69,6 +69,31 @@ fn a_rigid_ring_lets_go_at_the_speed_of_turning_discs() {
     assert!(said.starts_with(start), "{said}");
 }
 
+/// Wrong: an aluminium housing would grow in speed as heavy as steel, 2.9 times too much, so that its fit would seem to
+/// let go at half of the speed. Turning annuli: bore u(a) = rho w^2 a/(4 E) [(3 + nu) b^2 + (1 - nu) a^2], outside u(b)
+/// with both exchanged.
+#[test]
+fn a_light_housing_lets_go_at_its_own_speed() {
+    let (e, nu, density) = (70e9, 0.33, 2700.0);
+    let housing = |density| {
+        let mut conditions = fitted();
+        let fit = conditions.fits[1].as_mut().unwrap();
+        (fit.young_modulus, fit.poisson_ratio, fit.density) = (Some(e), Some(nu), density);
+        let report = mount(&RINGS, &conditions).report.unwrap();
+        report.seats[1].unwrap().loosening_speed.unwrap()
+    };
+    let [a, b, c] = [37.0185e-3f64, 40e-3, 80e-3].map(|r| r * r);
+    let limit = |density: f64| {
+        let bore = density / (4.0 * e) * 40e-3 * ((3.0 + nu) * c + (1.0 - nu) * b);
+        let ring = 7800.0 / (4.0 * 207e9) * 40e-3 * (3.3 * a + 0.7 * b);
+        (0.5 * I / (bore - ring)).sqrt()
+    };
+    assert!(relative(housing(Some(density)), limit(density)) < 1e-12);
+    // Without a density of its own it has that of the rings.
+    assert!(relative(housing(None), limit(7800.0)) < 1e-12);
+    assert!(limit(density) > 1.8 * limit(7800.0));
+}
+
 /// Wrong: a bearing that is warm all through would carry other forces than a cold one.
 #[test]
 fn one_temperature_changes_no_force_and_makes_no_stress() {

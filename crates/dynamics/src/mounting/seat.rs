@@ -419,7 +419,7 @@ fn partner_tube(bearing: &Unmounted, side: Side, fit: Fit) -> Tube {
         material: Material {
             young_modulus: fit.young_modulus.unwrap_or(steel.young_modulus),
             poisson_ratio: fit.poisson_ratio.unwrap_or(steel.poisson_ratio),
-            density: steel.density,
+            density: fit.density.unwrap_or(steel.density),
         },
     }
 }
