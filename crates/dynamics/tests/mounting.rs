@@ -246,3 +246,33 @@ fn a_motion_of_a_mounted_bearing_stays_at_its_equilibrium() {
     }
     assert!(state.ledger.relative_defect().abs() < 1e-9);
 }
+
+/// Wrong: a clamped seat that pulls in spite of interference would be said to have a clearance below zero. An inner
+/// ring 16.5 K warmer than its shaft keeps 10 um - 16.5 x 11.5e-6 x 50 mm = 0.51 um; what it lacks makes it tight.
+#[test]
+fn a_clamped_seat_without_pressure_says_what_it_lacks() {
+    let rings = flexible(Hold::Clamped);
+    let with = |interference: f64| Conditions {
+        fits: [fit(interference, 0.0), None],
+        ..at(36.5, 20.0, 20.0, [20.0, 20.0])
+    };
+    let said = message(&rings, &with(I));
+    let start = "the inner ring has 0.51 um of interference with its partner, warm as it is, which a seat that cannot \
+                 contract along the axis takes up without pressure, but inner.support = \"clamped\"";
+    assert!(said.starts_with(start), "{said}");
+    let (_, rest) = said.split_once("at least ").unwrap();
+    let missing: f64 = rest
+        .split_once(" um more interference")
+        .unwrap()
+        .0
+        .parse()
+        .unwrap();
+    assert!(missing > 0.1, "{said}");
+    let seat = mount(&rings, &with(I + 1e-6 * (missing + 0.01)))
+        .report
+        .unwrap()
+        .seats[0];
+    assert!(seat.unwrap().pressure > 0.0);
+    let said = message(&rings, &with(I + 1e-6 * (missing - 0.02)));
+    assert!(said.contains("at least 0.02 um more interference"), "{said}");
+}

@@ -230,7 +230,8 @@ impl RingSeat {
                 if self.fit.is_some() && pressure <= 0.0 {
                     return Err(DynamicsError::LooseFit {
                         side: self.side.name(),
-                        clearance_um: -2e6 * delta,
+                        interference_um: 2e6 * delta,
+                        missing_um: -2e6 * (delta + kept / radial.pressure),
                     });
                 }
                 let parts = [(radial, moved), (stretch, strain.partner)];
