@@ -102,6 +102,30 @@ fn a_runaway_is_named_and_is_an_error() {
     assert!(rounds > 1, "{rounds}");
 }
 
+/// Wrong: thick oil, whose friction falls faster than it warms the bearing, would have no steady state, or be taken for
+/// a runaway. The power of the last round is that which flows off, within 0.5 K.
+#[test]
+fn thick_oil_has_its_steady_state() {
+    let oil = "f_0 = 6.0\nf_1 = 6e-4\nviscosity_class = 680\nviscosity_at_100 = \"40 mm2/s\"";
+    let cooled = HEAT
+        .replace("0.4 W/K", "2.0 W/K")
+        .replace("\"2 W/K\"", "\"5 W/K\"");
+    let dir = scene(&cooled.replace("torque = \"0.05 N m\"", oil));
+    let outcome = dir.raceway(&[&["heat", "scene.toml", "--out", "out"], &RIGID[..]].concat());
+    assert_eq!(outcome.code, Some(0), "{}", outcome.stderr);
+    let found = heat_file(&dir, "out");
+    assert_eq!(found["end"], "steady");
+    let rounds = found["rounds"].as_array().unwrap();
+    assert!((4..=10).contains(&rounds.len()), "{}", rounds.len());
+    assert!(number(&found, "/gain") < -1.0);
+    let last = rounds.last().unwrap();
+    for body in 0..2 {
+        let was = last["temperatures_k"][body].as_f64().unwrap();
+        let is = number(&found, &format!("/temperatures_k/{body}"));
+        assert!((was - is).abs() < 0.5, "{was} {is}");
+    }
+}
+
 /// Wrong: what a balance cannot be found with would be guessed.
 #[test]
 fn what_a_balance_lacks_is_said() {
@@ -263,5 +287,83 @@ fn free_balls_warm_a_bearing_by_their_own_friction() {
         &["--set", "heat.torque=\"0.1 N m\""],
         2,
         "heat.torque stands beside balls.motion = \"free\", whose friction is a result; remove it",
+    );
+}
+
+/// Wrong: with drag of the balls an outer ring that turns would warm the bearing by a part of its power, that of the
+/// torque on the inner ring which stands. Either ring puts in what contacts lose and what drag takes, n k (r w_c)^3
+/// with k = rho C_d pi D_w^2/8.
+#[test]
+fn drag_warms_whichever_ring_turns() {
+    let text = HEAT.replace("speed = \"3000 rpm\"\ntorque = \"0.05 N m\"\n", "");
+    for ring in ["inner", "outer"] {
+        let balls = format!(
+            "[balls]\nmotion = \"free\"\n\n[effects.traction]\nlaw = \"coulomb\"\nfriction = 0.07\n\n\
+             [effects.ball_drag]\ncoefficient = 0.5\ndensity = \"25 kg/m3\"\n\n\
+             [speed]\n{ring} = \"-9000 rpm\"\n\n[heat]"
+        );
+        let dir = scene(&text.replace("[heat]", &balls));
+        let no_radial = ["--set", "effects.radial_force=none"];
+        let heat = [&["heat", "scene.toml", "--out", "out"], &RIGID[..], &no_radial].concat();
+        let outcome = dir.raceway(&heat);
+        assert_eq!(outcome.code, Some(0), "{}", outcome.stderr);
+        let cold = ["inner", "outer", "balls"].map(|body| format!("effects.temperature.{body}=\"20 degC\""));
+        let mut run = [&["run", "scene.toml", "--out", "cold"], &RIGID[..], &no_radial].concat();
+        cold.iter().for_each(|cold| run.extend(["--set", cold]));
+        let outcome = dir.raceway(&run);
+        assert_eq!(outcome.code, Some(0), "{}", outcome.stderr);
+        let shaft = Table::read(&dir, "cold/shaft.csv");
+        let of = |name: &str| shaft.column(name)[0];
+        let orbit = 0.5 * 65.0235e-3 * of("cage_speed_rad_per_s").abs();
+        let drag = 18.0 * 0.5 * 25.0 * 0.5 * std::f64::consts::FRAC_PI_4 * 9e-3f64.powi(2) * orbit.powi(3);
+        let power = of("friction_power_w") + drag;
+        assert!(drag > 0.2 * power, "{ring}: {drag} of {power}");
+        let found = heat_file(&dir, "out");
+        assert_close(ring, number(&found, "/rounds/0/power_w"), power, 1e-3);
+    }
+}
+
+/// Wrong: a balance could not have a housing of another material, which holds the outer ring otherwise as it warms up,
+/// nor another reference. The last round beside a run of the scene at these temperatures.
+#[test]
+fn partners_of_a_balance_have_their_own_expansion() {
+    let fit = "[effects.fit.outer]\ninterference = \"15 um\"\nhousing_diameter = \"160 mm\"\n\n[heat]\n\
+               housing_expansion = \"23e-6 /K\"\nreference = \"15 degC\"";
+    let text = HEAT
+        .replace("[heat]", fit)
+        .replace("outer_ambient = \"2 W/K\"", "outer_housing = \"2 W/K\"");
+    let dir = scene(&text.replace(
+        "[static]",
+        "conductance.housing_ambient = \"0.5 W/K\"\n\n[static]",
+    ));
+    let clearance = |arguments: &[&str], out: &str| {
+        let outcome = dir.raceway(&[arguments, &["scene.toml", "--out", out], &RIGID[..]].concat());
+        assert_eq!(outcome.code, Some(0), "{}", outcome.stderr);
+    };
+    clearance(&["heat"], "out");
+    let found = heat_file(&dir, "out");
+    let last = found["rounds"].as_array().unwrap().last().unwrap();
+    let bodies = ["inner", "outer", "balls", "shaft", "housing"].iter().enumerate();
+    let kelvin = |i: usize| last["temperatures_k"][i].as_f64().unwrap();
+    let mut set: Vec<String> = bodies
+        .map(|(i, body)| format!("effects.temperature.{body}=\"{:?} K\"", kelvin(i)))
+        .collect();
+    set.push("effects.temperature.housing_expansion=\"23e-6 /K\"".to_string());
+    set.push("effects.temperature.reference=\"15 degC\"".to_string());
+    let mut run = vec!["run"];
+    set.iter().for_each(|set| run.extend(["--set", set]));
+    clearance(&run, "warm");
+    let summary = crate::util::tables::summary(&dir, "warm");
+    assert_close(
+        "clearance",
+        last["radial_clearance_m"].as_f64().unwrap(),
+        number(&summary, "/clearance/operating/radial_m"),
+        1e-9,
+    );
+    refused(
+        &dir,
+        &["--set", "heat.housing_expansion=\"23 /K\""],
+        2,
+        "heat.housing_expansion is 23 /K; expected at most 1e-3 /K",
     );
 }

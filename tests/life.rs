@@ -445,3 +445,29 @@ fn nothing_rolls_without_a_speed() {
         "the rings do not turn against each other in this run",
     );
 }
+
+/// Wrong: an equilibrium could not be told that its inner ring stands, since [speed] would be refused in it: means of
+/// the ball forces with the exponent 10/3 on the ring that stands, 3 on the one that turns.
+#[test]
+fn an_equilibrium_lives_by_the_ring_that_stands() {
+    let table = LIFE.replace("speed = \"1800 rpm\"\n", "");
+    let found = ["inner", "outer"].map(|ring| {
+        let speed = format!("[speed]\n{ring} = \"1800 rpm\"\n\n[static]");
+        let dir = scene(&table.replace("[static]", &speed));
+        life(&dir, &["out"]);
+        let forces = crate::util::tables::Table::read(&dir, "out/balls.csv").column("inner_force_n");
+        let mean = |exponent: f64| {
+            let powers = forces.iter().map(|force| force.powf(exponent));
+            (powers.sum::<f64>() / forces.len() as f64).powf(1.0 / exponent)
+        };
+        let found = life_file(&dir, "out");
+        assert!(number(&found, "/l10r_hours") > 0.0);
+        (
+            number(&found, "/inner/l10r_revolutions"),
+            [mean(3.0), mean(10.0 / 3.0)],
+        )
+    });
+    let [(turns, [mean, _]), (stands, [_, uneven])] = found;
+    assert_close("inner ring", stands / turns, (mean / uneven).powi(3), 1e-9);
+    assert!(stands < 0.99 * turns, "{stands} {turns}");
+}

@@ -8,7 +8,7 @@ use checkpoint::committed_steps;
 use serde_json::Value;
 
 use crate::interruption::{outcome_of, signal};
-use crate::several::pair;
+use crate::several::{kind, pair};
 use crate::util::lockstep::{assert_same_run, small_motion};
 use crate::util::tables::{Table, keys, number, summary};
 use crate::util::{Dir, Files, RIGID, SCENE, assert_close, assert_within, with_line};
@@ -402,4 +402,59 @@ fn a_sweep_without_time_solves_nothing_and_says_so() {
     let outcome = list.raceway(&["run", "pair.toml", "--out", "out", "--wall-time", "00:00:00"]);
     assert_eq!(outcome.code, Some(75), "{}", outcome.stderr);
     assert!(outcome.stderr.contains(said), "{}", outcome.stderr);
+}
+
+/// Wrong: temperatures and expansions could not be swept, of a bearing or of a list, or points be others than single
+/// runs at their values.
+#[test]
+fn temperatures_and_expansions_are_swept() {
+    let warm = "[effects.temperature]\ninner = \"20 degC\"\nouter = \"20 degC\"\nballs = \"20 degC\"\n\n";
+    let expansion = "density = \"7800 kg/m3\"\nexpansion = \"11.5e-6 /K\"\n";
+    let text = SCENE.replace("density = \"7800 kg/m3\"\n", expansion);
+    let steps =
+        "[sweep]\nkey = \"effects.temperature.inner\"\nfrom = \"20 degC\"\nto = \"333.15 K\"\nsteps = 4";
+    let values = "[sweep]\nkey = \"materials.rings.expansion\"\nvalues = [\"11e-6 /K\", \"12e-6 1/K\"]";
+    let dir = Dir::with_scene(&text.replace("[static]", &format!("{warm}{steps}")));
+    dir.run("out", &RIGID);
+    let table = Table::read(&dir, "out/balls.csv");
+    let kelvin = table.column("effects.temperature.inner_k");
+    assert_eq!(
+        [0, 18, 36, 54, 72].map(|row| kelvin[row]),
+        [293.15, 303.15, 313.15, 323.15, 333.15]
+    );
+    dir.write("scene.toml", text.replace("[static]", &format!("{warm}[static]")));
+    dir.run(
+        "one",
+        &[&RIGID[..], &["--set", "effects.temperature.inner=50 degC"]].concat(),
+    );
+    let forces = |table: Table| table.column("inner_force_n");
+    let [point, one] = [table.step(3), Table::read(&dir, "one/balls.csv")].map(forces);
+    for (point, one) in point.iter().zip(&one) {
+        assert_close("force", *point, *one, 1e-9);
+    }
+    dir.write("scene.toml", text.replace("[static]", &format!("{warm}{values}")));
+    dir.run("expansion", &RIGID);
+    let shaft = Table::read(&dir, "expansion/shaft.csv");
+    assert_eq!(shaft.column("materials.rings.expansion_per_k"), [11e-6, 12e-6]);
+    let list = pair(&format!("{warm}{steps}"));
+    list.write(
+        "types/kind.toml",
+        kind().replace("density = \"7800 kg/m3\"\n", expansion),
+    );
+    let outcome = list.raceway(&["run", "pair.toml", "--out", "out"]);
+    assert_eq!(outcome.code, Some(0), "{}", outcome.stderr);
+    let last = Table::read(&list, "out/shaft.csv").column("effects.temperature.inner_k");
+    assert_eq!(last.last(), Some(&333.15));
+    let cold = text.replace(
+        "[static]",
+        &format!("{warm}{}", values.replace("11e-6 /K", "-300 degC")),
+    );
+    dir.write("scene.toml", cold);
+    let outcome = dir.raceway(&["check", "scene.toml"]);
+    let said = "\"-300 degC\" is no temperature above absolute zero";
+    assert!(
+        outcome.code == Some(2) && outcome.stderr.contains(said),
+        "{}",
+        outcome.stderr
+    );
 }

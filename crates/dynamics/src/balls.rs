@@ -1,6 +1,6 @@
 //! What is reported of every ball.
 
-use contact::{Meridian, SemiAxes, Side};
+use contact::{BySide, Meridian, SemiAxes, Side};
 use serde::Serialize;
 
 use crate::surfaces::EllipseKind;
@@ -90,6 +90,14 @@ pub struct Friction {
     pub cage_speed_rad_per_s: f64,
     /// Speed of a cage of pure rolling at the free contact angle, rad/s.
     pub kinematic_cage_speed_rad_per_s: f64,
+}
+
+impl Friction {
+    /// Power, W, that rings put in which turn at these speeds, rad/s: what the contacts lose and what drag takes from
+    /// the balls.
+    pub fn drive_power(&self, speeds: BySide<f64>) -> f64 {
+        self.torque_n_m * speeds[0] + self.outer_torque_n_m * speeds[1]
+    }
 }
 
 /// A free cage.

@@ -259,15 +259,17 @@ pub enum DynamicsError {
     },
     /// A clamped ring that its fit does not press on its partner.
     #[error(
-        "the {side} ring has {clearance_um:.2} um of clearance on its partner, warm as it is, but {side}.support = \
-         \"clamped\" keeps it on it; use \"mean_motion\", which lets a loose ring keep its size, or more \
-         interference in [effects.fit.{side}]"
+        "the {side} ring has {}, but {side}.support = \"clamped\" keeps it on it; use \"mean_motion\", which lets a \
+         loose ring keep its size, or at least {missing_um:.2} um more interference in [effects.fit.{side}]",
+        looseness(*interference_um)
     )]
     LooseFit {
         /// `inner` or `outer`.
         side: &'static str,
-        /// Diametral clearance, um; negative where the seat pulls in spite of interference.
-        clearance_um: f64,
+        /// Diametral interference at the bearing's temperatures, um; negative is clearance.
+        interference_um: f64,
+        /// Interference that it lacks for any pressure, um.
+        missing_um: f64,
     },
     /// A ring that speed lifts off its partner.
     #[error(
@@ -375,5 +377,19 @@ impl DynamicsError {
                 | StepInaccurate { .. }
                 | DynamicsError::Contact(ContactError::OffGroove { .. })
         )
+    }
+}
+
+/// What a ring has that no pressure holds on its partner.
+fn looseness(interference_um: f64) -> String {
+    match interference_um < 0.0 {
+        true => format!(
+            "{:.2} um of clearance on its partner, warm as it is",
+            -interference_um
+        ),
+        false => format!(
+            "{interference_um:.2} um of interference with its partner, warm as it is, which a seat that cannot \
+             contract along the axis takes up without pressure"
+        ),
     }
 }

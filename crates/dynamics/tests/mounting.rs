@@ -69,6 +69,31 @@ fn a_rigid_ring_lets_go_at_the_speed_of_turning_discs() {
     assert!(said.starts_with(start), "{said}");
 }
 
+/// Wrong: an aluminium housing would grow in speed as heavy as steel, 2.9 times too much, so that its fit would seem to
+/// let go at half of the speed. Turning annuli: bore u(a) = rho w^2 a/(4 E) [(3 + nu) b^2 + (1 - nu) a^2], outside u(b)
+/// with both exchanged.
+#[test]
+fn a_light_housing_lets_go_at_its_own_speed() {
+    let (e, nu, density) = (70e9, 0.33, 2700.0);
+    let housing = |density| {
+        let mut conditions = fitted();
+        let fit = conditions.fits[1].as_mut().unwrap();
+        (fit.young_modulus, fit.poisson_ratio, fit.density) = (Some(e), Some(nu), density);
+        let report = mount(&RINGS, &conditions).report.unwrap();
+        report.seats[1].unwrap().loosening_speed.unwrap()
+    };
+    let [a, b, c] = [37.0185e-3f64, 40e-3, 80e-3].map(|r| r * r);
+    let limit = |density: f64| {
+        let bore = density / (4.0 * e) * 40e-3 * ((3.0 + nu) * c + (1.0 - nu) * b);
+        let ring = 7800.0 / (4.0 * 207e9) * 40e-3 * (3.3 * a + 0.7 * b);
+        (0.5 * I / (bore - ring)).sqrt()
+    };
+    assert!(relative(housing(Some(density)), limit(density)) < 1e-12);
+    // Without a density of its own it has that of the rings.
+    assert!(relative(housing(None), limit(7800.0)) < 1e-12);
+    assert!(limit(density) > 1.8 * limit(7800.0));
+}
+
 /// Wrong: a bearing that is warm all through would carry other forces than a cold one.
 #[test]
 fn one_temperature_changes_no_force_and_makes_no_stress() {
@@ -220,4 +245,34 @@ fn a_motion_of_a_mounted_bearing_stays_at_its_equilibrium() {
         assert!((*a - *b).norm() < 1e-8 * largest, "{a:?} {b:?}");
     }
     assert!(state.ledger.relative_defect().abs() < 1e-9);
+}
+
+/// Wrong: a clamped seat that pulls in spite of interference would be said to have a clearance below zero. An inner
+/// ring 16.5 K warmer than its shaft keeps 10 um - 16.5 x 11.5e-6 x 50 mm = 0.51 um; what it lacks makes it tight.
+#[test]
+fn a_clamped_seat_without_pressure_says_what_it_lacks() {
+    let rings = flexible(Hold::Clamped);
+    let with = |interference: f64| Conditions {
+        fits: [fit(interference, 0.0), None],
+        ..at(36.5, 20.0, 20.0, [20.0, 20.0])
+    };
+    let said = message(&rings, &with(I));
+    let start = "the inner ring has 0.51 um of interference with its partner, warm as it is, which a seat that cannot \
+                 contract along the axis takes up without pressure, but inner.support = \"clamped\"";
+    assert!(said.starts_with(start), "{said}");
+    let (_, rest) = said.split_once("at least ").unwrap();
+    let missing: f64 = rest
+        .split_once(" um more interference")
+        .unwrap()
+        .0
+        .parse()
+        .unwrap();
+    assert!(missing > 0.1, "{said}");
+    let seat = mount(&rings, &with(I + 1e-6 * (missing + 0.01)))
+        .report
+        .unwrap()
+        .seats[0];
+    assert!(seat.unwrap().pressure > 0.0);
+    let said = message(&rings, &with(I + 1e-6 * (missing - 0.02)));
+    assert!(said.contains("at least 0.02 um more interference"), "{said}");
 }

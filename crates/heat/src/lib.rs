@@ -3,7 +3,7 @@
 //!
 //! Each round solves the equilibrium of the scene at its temperatures ([`balance`]), takes the friction of it
 //! ([`torque`], or a torque that the scene gives), and finds the temperatures that this makes ([`network`]). The rings
-//! are factored once. Cost: an equilibrium per round, some five rounds.
+//! are factored once. Cost: an equilibrium per round, some five rounds, up to ten with thick oil.
 
 pub mod balance;
 pub mod network;
@@ -14,6 +14,7 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, anyhow};
 use clap::Args;
 use comm::print;
+use contact::Side;
 use dynamics::mounting::Clearance;
 use dynamics::{Model, StaticSolution, StaticSolver};
 use results::failure::Failure;
@@ -51,7 +52,7 @@ pub struct HeatCommand {
 /// The bearing in a round.
 #[derive(Clone, Debug, Serialize)]
 struct BearingState {
-    /// Friction torque, N m.
+    /// Friction torque, N m: the power over the speed of the rings against each other.
     torque_n_m: f64,
     /// Part of the oil, N m; only by Palmgren's formula.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -136,8 +137,9 @@ pub fn heat(command: &HeatCommand) -> Result<(), Failure> {
 fn runaway(balance: &Balance<BearingState>, heat: &Heat) -> String {
     let warmest = (0..5).max_by(|a, b| balance.temperatures_k[*a].total_cmp(&balance.temperatures_k[*b]));
     let warmest = warmest.unwrap_or(0);
-    let gain = balance.gain.map_or(String::new(), |gain| {
-        format!(", each round changing temperatures {gain:.2} times as much as the one before")
+    let gain = balance.gain.filter(|gain| *gain > 0.0);
+    let gain = gain.map_or(String::new(), |gain| {
+        format!(", with {gain:.2} W more friction for each W more of heat")
     });
     format!(
         "thermal runaway: after {} rounds, with a body at heat.limit of {:.0} degC, friction makes more heat than \
@@ -178,7 +180,8 @@ fn check<'a>(scene: &'a Scene, path: &Path) -> Result<&'a Heat, Failure> {
     }
     if scene.effects.temperature.is_some() {
         return Err(anyhow!(
-            "{} has [effects.temperature], which raceway heat finds; remove it, or --set effects.temperature=none",
+            "{} has [effects.temperature], which raceway heat finds; remove it, or --set effects.temperature=none; its \
+             reference and the expansions of shaft and housing are keys of [heat] too",
             path.display()
         )
         .into());
@@ -248,9 +251,8 @@ impl WarmBearing<'_> {
                 celsius.join(", ")
             ))
         };
-        let settings = BODIES.iter().zip(temperatures);
-        let settings = settings.map(|(body, kelvin)| format!("effects.temperature.{body}=\"{kelvin:.9} K\""));
-        let overrides: Vec<String> = self.command.overrides.iter().cloned().chain(settings).collect();
+        let given = self.command.overrides.iter().cloned();
+        let overrides: Vec<String> = given.chain(settings(self.heat, temperatures)).collect();
         let scene = Scene::load(&self.command.scene, &overrides)?;
         let rings = self.model.rings.clone();
         self.model = model_with_rings(&scene, rings).map_err(|error| at(error.into()))?;
@@ -288,10 +290,7 @@ impl WarmBearing<'_> {
             },
             FrictionLaw::FreeBalls => Torque {
                 of_oil: 0.0,
-                of_load: solution
-                    .steady
-                    .as_ref()
-                    .map_or(0.0, |balls| balls.friction().torque_n_m.abs()),
+                of_load: drive_power(scene, solution) / self.speed,
             },
             FrictionLaw::Palmgren {
                 oil_factor,
@@ -319,6 +318,32 @@ impl WarmBearing<'_> {
         };
         (torque.total(), state)
     }
+}
+
+/// Settings of `[effects.temperature]` at temperatures, K.
+fn settings(heat: &Heat, temperatures: OfBodies) -> Vec<String> {
+    let kelvin = |key: &str, kelvin: f64| format!("effects.temperature.{key}=\"{kelvin:.9} K\"");
+    let bodies = BODIES.iter().zip(temperatures);
+    let bodies = bodies.map(|(body, temperature)| kelvin(body, temperature));
+    let reference = heat.reference.map(|reference| kelvin("reference", reference));
+    let partners = ["shaft", "housing"].iter().zip(heat.partner_expansion);
+    let partners = partners.filter_map(|(body, expansion)| {
+        Some(format!(
+            "effects.temperature.{body}_expansion=\"{:?} /K\"",
+            expansion?
+        ))
+    });
+    bodies.chain(reference).chain(partners).collect()
+}
+
+/// Power that the rings put into free balls, W.
+fn drive_power(scene: &Scene, solution: &StaticSolution) -> f64 {
+    let (Some(balls), Some(speeds)) = (&solution.steady, &scene.speed) else {
+        return 0.0;
+    };
+    balls
+        .friction()
+        .drive_power(Side::BOTH.map(|side| speeds.of(side).at(0.0)))
 }
 
 fn print_balance(balance: &Balance<BearingState>, heat: &Heat, speed: f64) {

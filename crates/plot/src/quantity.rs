@@ -94,7 +94,7 @@ pub const NEWTON_METRE: AxisUnit = AxisUnit {
 };
 
 /// Endings of column names, longer ones before those that they end with, and the units that show them.
-const ENDINGS: [(&str, AxisUnit); 13] = [
+const ENDINGS: [(&str, AxisUnit); 15] = [
     ("_rad_per_s", RPM),
     (
         "_n_s_per_m",
@@ -121,6 +121,20 @@ const ENDINGS: [(&str, AxisUnit); 13] = [
         "_kg_per_m3",
         AxisUnit {
             sign: "kg/m³",
+            factor: 1.0,
+        },
+    ),
+    (
+        "_per_k",
+        AxisUnit {
+            sign: "1/K",
+            factor: 1.0,
+        },
+    ),
+    (
+        "_k",
+        AxisUnit {
+            sign: "K",
             factor: 1.0,
         },
     ),

@@ -8,7 +8,7 @@
 //!
 //! The pressure is that without loads and speed; what these do to the seat is in the stress of the ring.
 
-use input::{LENGTH, Problems, Quantity, STRESS};
+use input::{DENSITY, LENGTH, Problems, Quantity, STRESS};
 use serde::Deserialize;
 
 use super::table::{self, About, Context, SpeedRole, Trial};
@@ -20,11 +20,13 @@ interference = "10 um"          # diametral, at the reference temperature; negat
 shaft_bore = "20 mm"            # optional, default 0 mm: a solid shaft
 young_modulus = "207 GPa"       # of the shaft; optional, default: that of the rings
 poisson_ratio = 0.3             # of the shaft; optional, default: that of the rings
+density = "7800 kg/m3"          # of the shaft; optional, default: that of the rings
 [effects.fit.outer]             # the outer ring in its housing
 interference = "5 um"           # diametral; negative: clearance
 housing_diameter = "160 mm"     # outside diameter of the housing, a thick tube
 young_modulus = "70 GPa"        # of the housing; optional, default: that of the rings
 poisson_ratio = 0.33            # of the housing; optional, default: that of the rings
+density = "2700 kg/m3"          # of the housing; optional, default: that of the rings
 "#;
 
 /// Interference over the diameter beyond which it is a slip of the unit: it would strain the ring beyond any yield.
@@ -49,6 +51,7 @@ struct ShaftFit {
     shaft_bore: Option<Quantity<LENGTH>>,
     young_modulus: Option<Quantity<STRESS>>,
     poisson_ratio: Option<f64>,
+    density: Option<Quantity<DENSITY>>,
 }
 
 /// The table of the outer ring.
@@ -59,6 +62,7 @@ struct HousingFit {
     housing_diameter: Quantity<LENGTH>,
     young_modulus: Option<Quantity<STRESS>>,
     poisson_ratio: Option<f64>,
+    density: Option<Quantity<DENSITY>>,
 }
 
 /// What both tables have.
@@ -67,6 +71,7 @@ struct Joint<'a> {
     interference: &'a Quantity<LENGTH>,
     young_modulus: Option<&'a Quantity<STRESS>>,
     poisson_ratio: Option<f64>,
+    density: Option<&'a Quantity<DENSITY>>,
 }
 
 impl table::EffectTable for FitTable {
@@ -132,6 +137,7 @@ impl ShaftFit {
             interference: &self.interference,
             young_modulus: self.young_modulus.as_ref(),
             poisson_ratio: self.poisson_ratio,
+            density: self.density.as_ref(),
         }
     }
 }
@@ -143,6 +149,7 @@ impl HousingFit {
             interference: &self.interference,
             young_modulus: self.young_modulus.as_ref(),
             poisson_ratio: self.poisson_ratio,
+            density: self.density.as_ref(),
         }
     }
 }
@@ -167,6 +174,9 @@ impl Joint<'_> {
         if let Some(modulus) = self.young_modulus {
             problems.require_positive(modulus, &format!("{table}.young_modulus"), "a modulus");
         }
+        if let Some(density) = self.density {
+            problems.require_positive(density, &format!("{table}.density"), "a density");
+        }
         if let Some(nu) = self.poisson_ratio {
             let key = format!("{table}.poisson_ratio");
             problems.require(
@@ -185,6 +195,7 @@ impl Joint<'_> {
             partner_diameter,
             young_modulus: self.young_modulus.map(Quantity::si),
             poisson_ratio: self.poisson_ratio,
+            density: self.density.map(Quantity::si),
         }
     }
 }

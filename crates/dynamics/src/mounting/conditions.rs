@@ -26,6 +26,8 @@ pub struct Fit {
     pub young_modulus: Option<f64>,
     /// Poisson's ratio of the partner; None: that of the rings.
     pub poisson_ratio: Option<f64>,
+    /// Density of the partner, kg/m3; None: that of the rings.
+    pub density: Option<f64>,
 }
 
 /// Temperatures, and how partners of other materials expand.

@@ -230,7 +230,8 @@ impl RingSeat {
                 if self.fit.is_some() && pressure <= 0.0 {
                     return Err(DynamicsError::LooseFit {
                         side: self.side.name(),
-                        clearance_um: -2e6 * delta,
+                        interference_um: 2e6 * delta,
+                        missing_um: -2e6 * (delta + kept / radial.pressure),
                     });
                 }
                 let parts = [(radial, moved), (stretch, strain.partner)];
@@ -419,7 +420,7 @@ fn partner_tube(bearing: &Unmounted, side: Side, fit: Fit) -> Tube {
         material: Material {
             young_modulus: fit.young_modulus.unwrap_or(steel.young_modulus),
             poisson_ratio: fit.poisson_ratio.unwrap_or(steel.poisson_ratio),
-            density: steel.density,
+            density: fit.density.unwrap_or(steel.density),
         },
     }
 }

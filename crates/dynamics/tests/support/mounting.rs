@@ -36,6 +36,7 @@ pub fn fit(interference: f64, partner_diameter: f64) -> Option<Fit> {
         partner_diameter,
         young_modulus: None,
         poisson_ratio: None,
+        density: None,
     })
 }
 

@@ -149,10 +149,12 @@ impl RawScene {
         if self.dynamic.is_none() && self.modes.is_some() {
             return SpeedUse::Modes;
         }
-        let is_used = self.effects.use_speed(makes_force) || self.lubricant.is_some();
+        // A life counts how often, and on the ring that stands; a heat balance how fast.
+        let is_counted = self.life.is_some() || self.heat.is_some();
+        let is_used = self.effects.use_speed(makes_force) || self.lubricant.is_some() || is_counted;
         match (self.is_at_rest(), is_used) {
             (false, _) => SpeedUse::Motion,
-            (true, true) => SpeedUse::ForceAtRest,
+            (true, true) => SpeedUse::AtRest,
             (true, false) => SpeedUse::Nothing,
         }
     }

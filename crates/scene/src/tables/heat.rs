@@ -7,7 +7,7 @@
 
 use std::collections::BTreeMap;
 
-use input::{ANGULAR_SPEED, Conductance, MOMENT, Problems, Quantity, Temperature, VISCOSITY};
+use input::{ANGULAR_SPEED, Conductance, Expansion, MOMENT, Problems, Quantity, Temperature, VISCOSITY};
 use serde::Deserialize;
 
 use super::oil::{ClassKeys, Oil};
@@ -25,6 +25,9 @@ pub struct RawHeat {
     viscosity_class: Option<f64>,
     viscosity_at_100: Option<Quantity<VISCOSITY>>,
     limit: Option<Temperature>,
+    reference: Option<Temperature>,
+    shaft_expansion: Option<Expansion>,
+    housing_expansion: Option<Expansion>,
     conductance: BTreeMap<String, Conductance>,
 }
 
@@ -46,6 +49,10 @@ pub struct Heat {
     pub friction: FrictionLaw,
     /// Temperature from which on the balance has run away, K.
     pub limit: f64,
+    /// Temperature at which dimensions hold, K; None: the usual one.
+    pub reference: Option<f64>,
+    /// Thermal expansion of shaft and housing, 1/K; None: that of the rings.
+    pub partner_expansion: [Option<f64>; 2],
     /// Conductances, W/K, each between two numbers of [`BODIES`] or [`SURROUNDINGS`].
     pub conductances: Vec<([usize; 2], f64)>,
 }
@@ -110,12 +117,28 @@ impl RawHeat {
             }
             (None, true) => {}
         }
+        if let Some(reference) = &self.reference {
+            let rule = "expected -100 degC to 150 degC";
+            let is_plausible = PLAUSIBLE_CELSIUS.contains(&reference.celsius());
+            problems.require(is_plausible, "heat.reference", reference, rule);
+        }
+        let partner_expansion = [
+            ("heat.shaft_expansion", &self.shaft_expansion),
+            ("heat.housing_expansion", &self.housing_expansion),
+        ]
+        .map(|(key, given)| {
+            let expansion = given.as_ref()?;
+            expansion.check(key, problems);
+            Some(expansion.per_kelvin())
+        });
         let conductances = self.conductances(problems);
         Some(Heat {
             ambient: self.ambient.kelvin(),
             speed: self.speed.as_ref().map(|speed| speed.si().abs()),
             friction: self.friction(has_free_balls, problems)?,
             limit,
+            reference: self.reference.as_ref().map(Temperature::kelvin),
+            partner_expansion,
             conductances,
         })
     }

@@ -52,9 +52,9 @@ struct RawSpeedRamp {
 pub enum SpeedUse {
     /// Motion in time.
     Motion,
-    /// A force that an effect makes of it in an equilibrium.
-    ForceAtRest,
-    /// An equilibrium without any effect of speed.
+    /// A force that an effect makes of it in an equilibrium, a film, a life or a heat balance.
+    AtRest,
+    /// An equilibrium without any of these.
     Nothing,
     /// Natural modes, which are those of a bearing at rest.
     Modes,
@@ -103,8 +103,8 @@ impl RawSpeed {
         let before = problems.len();
         if speed_use == SpeedUse::Nothing {
             problems.add(format!(
-                "[speed] does nothing in a scene at rest without {}; add one, compute motion with [dynamic], or remove \
-                 [speed]",
+                "[speed] does nothing in a scene at rest without [life], [heat], {}; add one, compute motion with \
+                 [dynamic], or remove [speed]",
                 effects::headers_that_use_speed(makes_force)
             ));
             return None;
@@ -119,7 +119,7 @@ impl RawSpeed {
         if self.inner.is_none() && self.outer.is_none() {
             problems.add("[speed] needs inner, outer, or both, such as inner = \"1800 rpm\"");
         }
-        let is_at_rest = speed_use == SpeedUse::ForceAtRest;
+        let is_at_rest = speed_use == SpeedUse::AtRest;
         let mut of = |key: &str, speed: &Option<RawRingSpeed>| match speed {
             Some(speed) => speed.check(key, is_at_rest, problems),
             None => Speed::constant(0.0),

@@ -5,7 +5,7 @@
 
 use std::fmt;
 
-use input::{AnyQuantity, Dimension, Problems, kind_of_dimension};
+use input::{AnyQuantity, Dimension, Expansion, Problems, Temperature, kind_of_dimension};
 use serde::Deserialize;
 use serde::de::{Deserializer, Error, Visitor};
 use toml_edit::{DocumentMut, Value};
@@ -36,9 +36,58 @@ pub struct RawSweep {
 struct RawValue {
     /// SI, or the number itself.
     si: f64,
-    dimension: Dimension,
+    unit: SweptUnit,
     /// How it is put into the scene of its point.
     toml: Value,
+}
+
+/// What a value is counted in.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum SweptUnit {
+    /// Base units, or none.
+    Base(Dimension),
+    Kelvin,
+    PerKelvin,
+}
+
+impl SweptUnit {
+    /// A value with its unit as typed.
+    fn read(text: &str) -> Result<(f64, SweptUnit), String> {
+        let has_kelvin = ["K", "degC", "°C"].iter().any(|unit| text.trim().ends_with(unit));
+        match (has_kelvin, text.contains('/')) {
+            (true, false) => text
+                .parse()
+                .map(|temperature: Temperature| (temperature.kelvin(), SweptUnit::Kelvin)),
+            (true, true) => text
+                .parse()
+                .map(|expansion: Expansion| (expansion.per_kelvin(), SweptUnit::PerKelvin)),
+            (false, _) => text
+                .parse()
+                .map(|AnyQuantity { si, dimension }| (si, SweptUnit::Base(dimension)))
+                .map_err(|error| error.to_string()),
+        }
+    }
+
+    /// Ending of the name of a column.
+    fn column_suffix(self) -> &'static str {
+        match self {
+            SweptUnit::Base(dimension) => kind_of_dimension(dimension).map_or("", |kind| kind.column_suffix),
+            SweptUnit::Kelvin => "_k",
+            SweptUnit::PerKelvin => "_per_k",
+        }
+    }
+
+    /// A value in SI as a scene has it.
+    fn toml(self, si: f64) -> Value {
+        match self {
+            SweptUnit::Base(dimension) => match kind_of_dimension(dimension) {
+                Some(kind) if !kind.si_unit.is_empty() => Value::from(kind.format_si(si)),
+                _ => Value::from(si),
+            },
+            SweptUnit::Kelvin => Value::from(format!("{si} K")),
+            SweptUnit::PerKelvin => Value::from(format!("{si:e} /K")),
+        }
+    }
 }
 
 /// What is computed.
@@ -84,8 +133,7 @@ impl RawSweep {
     pub fn check(&self, document: &DocumentMut, problems: &mut Problems) -> Option<Sweep> {
         let values = self.list(problems)?;
         let first = values.first()?;
-        let dimension = first.dimension;
-        if let Some(i) = values.iter().position(|v| v.dimension != dimension) {
+        if let Some(i) = values.iter().position(|v| v.unit != first.unit) {
             problems.add(format!(
                 "sweep.values[{i}] is {} while sweep.values[0] is {}; all must be of the same kind",
                 values[i].toml.to_string().trim(),
@@ -115,7 +163,7 @@ impl RawSweep {
             ));
             return None;
         }
-        let suffix = kind_of_dimension(dimension).map_or("", |k| k.column_suffix);
+        let suffix = first.unit.column_suffix();
         let mut points = Vec::with_capacity(values.len());
         for value in &values {
             match edit::point_text(document, &self.key, value.toml.clone()) {
@@ -148,7 +196,7 @@ impl RawSweep {
             (None, Some(from), Some(to), Some(steps)) => {
                 let before = problems.len();
                 let n = problems.whole(steps, "sweep.steps", 1, MAX_STEPS);
-                if from.dimension != to.dimension {
+                if from.unit != to.unit {
                     problems.add(
                         "sweep.from and sweep.to are of different kinds; expected the same such as \"0 kN\" \
  and \"3 kN\"",
@@ -170,14 +218,10 @@ impl RawSweep {
 fn equal_steps(from: &RawValue, to: &RawValue, n: usize) -> Vec<RawValue> {
     let between = |i: usize| {
         let si = from.si + (to.si - from.si) * (i as f64 / n as f64);
-        let toml = match kind_of_dimension(from.dimension) {
-            Some(kind) if !kind.si_unit.is_empty() => Value::from(kind.format_si(si)),
-            _ => Value::from(si),
-        };
         RawValue {
             si,
-            dimension: from.dimension,
-            toml,
+            unit: from.unit,
+            toml: from.unit.toml(si),
         }
     };
     let mut values = vec![from.clone()];
@@ -198,10 +242,10 @@ impl<'de> Deserialize<'de> for RawValue {
             }
 
             fn visit_str<E: Error>(self, text: &str) -> Result<RawValue, E> {
-                let AnyQuantity { si, dimension } = text.parse().map_err(E::custom)?;
+                let (si, unit) = SweptUnit::read(text).map_err(E::custom)?;
                 Ok(RawValue {
                     si,
-                    dimension,
+                    unit,
                     toml: Value::from(text),
                 })
             }
@@ -209,7 +253,7 @@ impl<'de> Deserialize<'de> for RawValue {
             fn visit_f64<E: Error>(self, value: f64) -> Result<RawValue, E> {
                 Ok(RawValue {
                     si: value,
-                    dimension: [0.0; 4],
+                    unit: SweptUnit::Base([0.0; 4]),
                     toml: Value::from(value),
                 })
             }
@@ -217,7 +261,7 @@ impl<'de> Deserialize<'de> for RawValue {
             fn visit_i64<E: Error>(self, value: i64) -> Result<RawValue, E> {
                 Ok(RawValue {
                     si: value as f64,
-                    dimension: [0.0; 4],
+                    unit: SweptUnit::Base([0.0; 4]),
                     toml: Value::from(value),
                 })
             }

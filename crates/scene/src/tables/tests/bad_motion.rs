@@ -479,8 +479,8 @@ fn effects_without_anything_to_do_are_refused() {
         (constant.replace("[static]", rayleigh), nothing("rayleigh_damping")),
         (
             replace_line(&constant, "[effects.ball_centrifugal]", ""),
-            "[speed] does nothing in a scene at rest without [effects.ball_centrifugal], [effects.frame_rotation], \
-             [effects.gyroscopic_moment], [effects.traction] or [effects.unbalance]; add one"
+            "[speed] does nothing in a scene at rest without [life], [heat], [effects.ball_centrifugal], \
+             [effects.frame_rotation], [effects.gyroscopic_moment], [effects.traction] or [effects.unbalance]; add one"
                 .to_string(),
         ),
         (
