@@ -28,7 +28,7 @@ pub(super) const QUEUE: usize = 1;
 const MOUNT_BYTES: usize = 40;
 
 /// Memory of both rings at rest and in motion: of a rigid ring None and Some(None).
-pub(crate) type RingsOfModel = ([Option<RingMemory>; 2], [Option<Option<MotionMemory>>; 2]);
+pub type RingsOfModel = ([Option<RingMemory>; 2], [Option<Option<MotionMemory>>; 2]);
 
 /// Forecasts of a run.
 #[derive(Clone, Copy, Debug, Default)]
@@ -186,7 +186,7 @@ pub fn require_memory(analysis: &Analysis, model: &Model) -> Result<(), Failure>
 }
 
 /// Memory of the rings of a model at rest and in motion, of which nothing is factored yet.
-pub(crate) fn rings_of(model: &Model) -> Result<RingsOfModel, Failure> {
+pub fn rings_of(model: &Model) -> Result<RingsOfModel, Failure> {
     let (mut statics, mut motion) = ([None; 2], [Some(None); 2]);
     for side in Side::BOTH {
         let Some(ring) = model.ring(side) else { continue };
