@@ -84,7 +84,7 @@ pub fn run(
     instants::record(&mut march, RestartState::Stored)?;
     let costs = StartCosts {
         read,
-        forecast: Forecasts::of_motion(settled.forecast, &motion, dynamic),
+        forecast: Forecasts::of_motion(settled.forecast, &motion, (scene, dynamic)),
         start,
     };
     march.finish_run(progress, limits, remarks.with(settled.warnings()), costs)
@@ -145,7 +145,7 @@ pub fn resume(
     };
     let costs = StartCosts {
         read,
-        forecast: Forecasts::of_motion(at_rest, &motion, dynamic),
+        forecast: Forecasts::of_motion(at_rest, &motion, (scene, dynamic)),
         start,
     };
     march.finish_run(progress, limits, remarks.with(warnings), costs)
@@ -158,7 +158,7 @@ fn factored<'a>(
     dynamic: &Dynamic,
     laps: &mut Laps,
 ) -> Result<Motion<'a>, Failure> {
-    let motion = laps.time(FACTOR, || Motion::new(model, settingsdynamic));
+    let motion = laps.time(FACTOR, || Motion::new(model, settings(scene, dynamic)));
     motion.map_err(Failure::solving)
 }
 
