@@ -243,6 +243,15 @@ const INVALID: [Case; 61] = [
         "grading = 0.2",
         &["inner.section.grading is 0.2; expected 1 (uniform) to 3"],
     ),
+    // Wrong: Gmsh would be blamed for nodes at one place.
+    (
+        "thickness_elements",
+        "thickness_elements = 60",
+        &[
+            "inner.section.grading is 1.2; with 60 thickness_elements the last would be 4.7e4 times the first; \
+             expected at most 1e4 times: a grading of at most 1.168, or fewer thickness_elements",
+        ],
+    ),
     (
         "shoulder_diameters",
         "shoulder_diameters = [\"56 mm\", \"60.4 mm\"]",
