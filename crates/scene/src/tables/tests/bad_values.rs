@@ -3,7 +3,7 @@
 use super::{Case, EXAMPLE, Scene, assert_messages, message_of, with_line};
 
 /// Values that make no sense.
-const INVALID: [Case; 61] = [
+const INVALID: [Case; 62] = [
     (
         "cut",
         "cut = [{ azimuth = [\"96 deg\", \"84 deg\"] }]",
