@@ -102,3 +102,32 @@ fn cuts_that_take_nothing_or_a_whole_raceway_are_refused() {
         }
     }
 }
+
+/// Wrong: a backend that cannot be would end as a solution that was not found, exit code 3, and a script would try a
+/// finer mesh.
+#[test]
+fn a_cyclic_solver_for_what_is_not_periodic_is_wrong_input() {
+    let free = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("meshes/7010c_inner_tet10.msh");
+    let free = format!("inner.mesh={:?}", free.to_str().unwrap());
+    let cyclic = ["--set", "solver.backend=cyclic"];
+    let dir = Dir::with_meshes();
+    let not_periodic =
+        "the inner ring is not rotationally periodic, so solver.backend = \"cyclic\" cannot be: ";
+    let refused = |arguments: &[&str], part: &str| {
+        let outcome = dir.raceway(&[arguments, &cyclic].concat());
+        assert_eq!(outcome.code, Some(2), "{arguments:?}: {}", outcome.stderr);
+        assert!(outcome.stderr.contains(part), "{arguments:?}: {}", outcome.stderr);
+    };
+    refused(&["check", "scene.toml", "--set", &free], not_periodic);
+    refused(
+        &["run", "scene.toml", "--out", "out", "--set", &free],
+        not_periodic,
+    );
+    let cut = "\n[[inner.cut]]\nazimuth = [\"47 deg\", \"65 deg\"]\nz = [\"5 mm\", \"8 mm\"]\n";
+    let modes = SCENE.replace("[static]", "[modes]\nnumber = 2\nbodies = [\"inner\"]");
+    dir.write("modes.toml", modes + cut);
+    refused(
+        &["run", "modes.toml", "--out", "out"],
+        "the inner ring is rotationally periodic only up to a defect, whose natural modes",
+    );
+}

@@ -105,6 +105,51 @@ fn check_forecasts_the_memory_of_motions_of_periodic_rings() {
     }
 }
 
+/// Wrong: a run with `[output.reduction]` would be killed for the memory of what it counts, a fifth to a half more, or
+/// fill the disk with its states, a sixth more than was forecast.
+#[test]
+fn extremes_and_damage_are_part_of_the_forecasts() {
+    let dir = rings(198, ElementKind::Hex8);
+    let motion = "[dynamic]\nduration = \"0.2 ms\"\nstep = \"20 us\"\nledger_tolerance = 1e-3\n\n[output.reduction]\n\n\
+                  [output.reduction.damage]\nstress = \"von_mises\"\nexponent = 9.0\nreference_amplitude = \"100 \
+                  MPa\"\nreference_cycles = 1e6\nnodes = \"all\"";
+    dir.write("scene.toml", SCENE.replace("[static]", motion));
+    for every in ["1", "1000"] {
+        let set = format!("dynamic.output_every={every}");
+        let options = ["scene.toml", "--threads", "2", "--json", "--set", &set];
+        let json = |arguments: &[&str]| -> serde_json::Value {
+            let outcome = dir.raceway(arguments);
+            assert_eq!(outcome.code, Some(0), "{}", outcome.stderr);
+            serde_json::from_str(&outcome.stdout).unwrap()
+        };
+        let checked = json(&[&["check"], &options[..]].concat());
+        let ran = json(&[&["run"], &options[..], &["--out", every]].concat());
+        let written: u64 = std::fs::read_dir(dir.path(every))
+            .unwrap()
+            .map(|entry| entry.unwrap().metadata().unwrap().len())
+            .sum();
+        let own = ran["summary"]["peak_memory_forecast_bytes"].as_f64();
+        assert_eq!(checked["peak_memory_bytes"].as_f64(), own);
+        let measured = ran["summary"]["peak_memory_bytes"].as_f64();
+        for (what, forecast, measured, limit) in [
+            ("memory", own, measured, TOLERANCE),
+            (
+                "disk",
+                checked["output_bytes"].as_f64(),
+                Some(written as f64),
+                0.1,
+            ),
+        ] {
+            let (forecast, measured) = (forecast.unwrap() / 1e6, measured.unwrap() / 1e6);
+            println!("files every {every}: {what} {forecast:.1} MB, measured {measured:.1} MB");
+            assert!(
+                (forecast / measured - 1.0).abs() <= limit,
+                "{what}: {forecast} for {measured} MB"
+            );
+        }
+    }
+}
+
 /// Wrong: the same of rings with one sparse factor, which is made anew for a motion. Measured with free meshes of 45 k
 /// to 414 k dofs and hex8 of 51 k, 1 and 2 threads: -9 to +17 %; the same run differs by up to 25 % on two threads.
 #[test]

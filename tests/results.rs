@@ -382,3 +382,24 @@ fn a_closed_pipe_is_no_crash() {
     assert_eq!(outcome.code, Some(0), "{}", outcome.stderr);
     assert!(dir.path("out/summary.json").exists());
 }
+
+/// Wrong: a script would take an answer that a full disk has cut off, or an empty one, for a whole one.
+#[test]
+fn an_answer_that_cannot_be_written_is_a_failure() {
+    let dir = Dir::with_scene(SCENE);
+    dir.run("out", &RIGID);
+    let rigid = |words: &[&'static str]| [words, &RIGID[..]].concat();
+    for arguments in [
+        rigid(&["check", "scene.toml"]),
+        rigid(&["check", "scene.toml", "--json"]),
+        rigid(&["run", "scene.toml", "--out", "again", "--json"]),
+        vec!["info", "out"],
+        vec!["help", "scene"],
+    ] {
+        let outcome = dir.raceway_after("exec > /dev/full", &arguments);
+        assert_eq!(outcome.code, Some(2), "{arguments:?}: {}", outcome.stderr);
+        let part = "error: cannot write to standard output: No space left on device";
+        assert!(outcome.stderr.contains(part), "{arguments:?}: {}", outcome.stderr);
+    }
+    assert!(dir.path("again/summary.json").exists());
+}

@@ -144,6 +144,22 @@ fn advice_holds_on_a_fresh_run() {
     );
 }
 
+/// Wrong: the command that is recommended would name a scene that is not there, seen from another folder.
+#[test]
+fn advice_runs_from_where_it_is_asked_for() {
+    let dir = studied();
+    std::fs::create_dir(dir.path("elsewhere")).unwrap();
+    let (out, scene) = (dir.path("out"), dir.path("scene.toml"));
+    for (folder, study, scene) in [
+        ("elsewhere", "../out", "../scene.toml"),
+        ("/", out.to_str().unwrap(), scene.to_str().unwrap()),
+    ] {
+        let arguments = ["advise", study, "--error", "1%", "--quantity", "history"];
+        let said = dir.raceway_after(&format!("cd {folder}"), &arguments).stdout;
+        assert!(said.contains(&format!("    raceway run {scene} --set")), "{said}");
+    }
+}
+
 /// Wrong: a user would take a study for an answer that it does not have.
 #[test]
 fn an_error_that_no_point_reaches_is_said() {

@@ -143,7 +143,7 @@ fn print_memory(
     motion: [Option<Option<MotionMemory>>; 2],
 ) {
     let n_threads = rayon::current_num_threads();
-    let (start, steps) = forecast((&scene.analysis, model), memory, motion);
+    let (start, steps) = forecast((scene, model), memory, motion);
     let (peak, note) = match (&scene.analysis, steps) {
         (Analysis::Dynamic(_), Some(steps)) => {
             let note = format!(" ({:.0} MB for the static start)", start as f64 / 1e6);

@@ -1,6 +1,5 @@
 //! `raceway help`, of the program, of a command, and the reference of scenes; completions and the man page.
 
-use std::io::Write;
 use std::path::Path;
 use std::process::ExitCode;
 
@@ -21,7 +20,7 @@ pub fn help(topic: &[String], mut program: clap::Command) -> ExitCode {
         )),
     };
     match text {
-        Ok(text) => print_all(text.trim_end().as_bytes()),
+        Ok(text) => print_all(text.trim_end()),
         Err(problem) => {
             let failure = Failure::User(anyhow::anyhow!(problem));
             print::note(format_args!("{}: {}", failure.kind(), failure.text()));
@@ -34,14 +33,14 @@ pub fn help(topic: &[String], mut program: clap::Command) -> ExitCode {
 pub fn completions(shell: clap_complete::Shell, mut program: clap::Command) -> ExitCode {
     let mut text = Vec::new();
     clap_complete::generate(shell, &mut program, "raceway", &mut text);
-    print_all(&text)
+    print_all(&String::from_utf8_lossy(&text))
 }
 
 /// Prints the man page.
 pub fn man(program: clap::Command) -> ExitCode {
     let mut text = Vec::new();
     match clap_mangen::Man::new(program).render(&mut text) {
-        Ok(()) => print_all(&text),
+        Ok(()) => print_all(&String::from_utf8_lossy(&text)),
         Err(error) => {
             print::note(format_args!("error: cannot make the man page: {error}"));
             ExitCode::FAILURE
@@ -54,7 +53,7 @@ pub fn pages(mut program: clap::Command, out: &Path) -> ExitCode {
     // Options that all commands share are known to a command once the program is built.
     program.build();
     match write_pages(&program, out) {
-        Ok(n) => print_all(format!("{n} man pages in {}", out.display()).as_bytes()),
+        Ok(n) => print_all(&format!("{n} man pages in {}", out.display())),
         Err(error) => {
             let failure = Failure::User(anyhow::anyhow!(
                 "cannot write man pages into {}: {error}",
@@ -79,11 +78,15 @@ fn write_pages(program: &clap::Command, out: &Path) -> std::io::Result<usize> {
     Ok(n)
 }
 
-/// A reader that has seen enough, such as head, is no error.
-fn print_all(text: &[u8]) -> ExitCode {
-    let mut out = std::io::stdout();
-    let _ = out.write_all(text).and_then(|()| out.write_all(b"\n"));
-    ExitCode::SUCCESS
+fn print_all(text: &str) -> ExitCode {
+    print::to_standard_output(text);
+    match Failure::unwritten() {
+        None => ExitCode::SUCCESS,
+        Some(failure) => {
+            print::note(format_args!("{}: {}", failure.kind(), failure.text()));
+            ExitCode::from(failure.number())
+        }
+    }
 }
 
 fn of_key(key: &str) -> Result<String, String> {

@@ -259,7 +259,7 @@ fn main() -> ExitCode {
     if is_answer_only {
         answer::say(&name, failure.as_ref());
     }
-    let Some(failure) = failure else {
+    let Some(failure) = failure.or_else(Failure::unwritten) else {
         log::end(None);
         return ExitCode::SUCCESS;
     };

@@ -339,7 +339,7 @@ impl QuasiStaticRun<'_, '_, '_> {
         let snapshot = findings.last.clone();
         let solver = &self.bearing.solver;
         let forecast = Side::BOTH.map(|side| solver.ring(side).map(|r| r.solver.memory));
-        let forecast = Forecasts::of_points(forecast, model, 1 + settings.n_steps);
+        let forecast = Forecasts::of_points(forecast, (scene, model), 1 + settings.n_steps);
         let laps = solver.laps_with(&self.laps);
         let costs = agree(self.files.finish(read, forecast, laps, start));
         // A run that failed says why, not what its failure did to the files; one that stopped must have its step.

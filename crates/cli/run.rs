@@ -142,7 +142,7 @@ fn sum_up(
 ) -> Result<(), Failure> {
     let Some(files) = sweep.files else { return Ok(()) };
     let forecast = Side::BOTH.map(|side| solver.ring(side).map(|r| r.solver.memory));
-    let forecast = Forecasts::of_points(forecast, &sweep.model, sweep.n_points);
+    let forecast = Forecasts::of_points(forecast, (scene, &sweep.model), sweep.n_points);
     let costs = agree(files.finish(read, forecast, solver.laps_with(&sweep.laps), start));
     // A run that failed says why, not what its failure did to the files.
     let costs = match (costs, ended) {

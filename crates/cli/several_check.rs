@@ -2,11 +2,12 @@
 
 use assembly::Assembly;
 use comm::print;
+use dynamics::Model;
 use dynamics::motion::check_supported;
 use results::answer;
 use results::failure::Failure;
 use results::list_memory::{BearingMemory, forecast_list, forecast_modes_of_list};
-use scene::{Analysis, SeveralScene, ShaftKind, build_assembly, have_same_rings};
+use scene::{Analysis, BearingOnShaft, SeveralScene, ShaftKind, build_assembly, have_same_rings};
 
 use crate::bodies::{orders_of_seats, print_bodies};
 use crate::ring_sizes::print_rings;
@@ -27,24 +28,18 @@ pub fn check(scene: &SeveralScene) -> Result<(), Failure> {
     let mut listed: Vec<BearingMemory<'_>> = Vec::new();
     for (i, bearing) in scene.bearings.iter().enumerate() {
         let model = &assembly.bearings[i].model;
-        let geometry = &model.geometry;
-        print::line(format_args!(
-            "bearing  {:?} of {} at {:.3} mm, {}: {} balls, clearance {:.4} mm, free contact angle {:.4} deg",
-            bearing.name,
-            bearing.type_file,
-            1e3 * bearing.position,
-            bearing.orientation.name(),
-            geometry.n_balls,
-            1e3 * geometry.clearance(),
-            geometry.free_contact_angle().to_degrees()
-        ));
+        print_bearing(bearing, model);
         let like = (0..i).find(|&k| have_same_rings(&scene.bearings[k].scene, &bearing.scene));
         if let Some(k) = like {
             print::line(format_args!(
                 "         its rings are those of {:?}, and are factored once",
                 scene.bearings[k].name
             ));
-            listed.push(BearingMemory { model, ..listed[k] });
+            listed.push(BearingMemory {
+                scene: &bearing.scene,
+                model,
+                ..listed[k]
+            });
             continue;
         }
         if matches!(scene.analysis, Analysis::Dynamic(_)) {
@@ -52,6 +47,7 @@ pub fn check(scene: &SeveralScene) -> Result<(), Failure> {
         }
         let rings = print_rings(model)?;
         listed.push(BearingMemory {
+            scene: &bearing.scene,
             model,
             rest: rings.memory,
             motion: rings.motion,
@@ -74,6 +70,20 @@ pub fn check(scene: &SeveralScene) -> Result<(), Failure> {
     answer::add("peak_memory_bytes", peak);
     answer::add("shaft_dofs", assembly.shaft.n());
     Ok(())
+}
+
+fn print_bearing(bearing: &BearingOnShaft, model: &Model) {
+    let geometry = &model.geometry;
+    print::line(format_args!(
+        "bearing  {:?} of {} at {:.3} mm, {}: {} balls, clearance {:.4} mm, free contact angle {:.4} deg",
+        bearing.name,
+        bearing.type_file,
+        1e3 * bearing.position,
+        bearing.orientation.name(),
+        geometry.n_balls,
+        1e3 * geometry.clearance(),
+        geometry.free_contact_angle().to_degrees()
+    ));
 }
 
 /// Says how much a run would write.

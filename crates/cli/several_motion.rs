@@ -275,7 +275,7 @@ impl ListMarch<'_> {
         let mut warnings = Vec::new();
         for (i, files) in std::mem::take(&mut self.files).into_iter().enumerate() {
             let (motion, state) = (&self.motion.bearings[i], &self.state.bearings[i]);
-            let forecast = Forecasts::of_motion([None, None], motion, self.dynamic);
+            let forecast = Forecasts::of_motion([None, None], motion, (&self.placed[i], self.dynamic));
             let findings = Findings {
                 status: status.to_string(),
                 last: Snapshot::of_motion(motion, state),

@@ -142,7 +142,7 @@ impl FoundList {
         for (i, files) in std::mem::take(&mut self.files).into_iter().enumerate() {
             let (mounted, factors) = (&self.assembly.bearings[i], solver.of_bearing(i));
             let forecast = Side::BOTH.map(|side| factors.ring(side).map(|r| r.solver.memory));
-            let forecast = Forecasts::at_rest(forecast, &mounted.model);
+            let forecast = Forecasts::at_rest(forecast, (&self.placed[i], &mounted.model));
             let found = &self.last.bearings[i];
             let [rounds, newton] = self.counts.of_bearings[i].map(|count| count as usize);
             let steps = self.step as usize;

@@ -5,7 +5,7 @@ use dynamics::Model;
 use results::failure::Failure;
 use results::list_memory::require_memory_of_list;
 use results::survey::{Survey, say_doubts};
-use scene::{SeveralScene, build_assembly, doubts};
+use scene::{Scene, SeveralScene, build_assembly, doubts};
 
 /// A list that has been read.
 pub struct ReadList {
@@ -38,8 +38,11 @@ pub fn read_list(
 
 /// Fails where all bearings together need more memory than there is.
 pub fn require_memory_of_all(scene: &SeveralScene, assembly: &Assembly) -> Result<(), Failure> {
-    let models: Vec<&Model> = assembly.bearings.iter().map(|bearing| &bearing.model).collect();
-    require_memory_of_list(&scene.analysis, &models)
+    let bearings = scene.bearings.iter().zip(&assembly.bearings);
+    let listed: Vec<(&Scene, &Model)> = bearings
+        .map(|(bearing, mounted)| (&bearing.scene, &mounted.model))
+        .collect();
+    require_memory_of_list(&scene.analysis, &listed)
 }
 
 /// The regions in which the bearings keep fields, if the scene has one.

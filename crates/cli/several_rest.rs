@@ -378,7 +378,7 @@ impl SeveralFiles {
             let factors = solver.of_bearing(i);
             let forecast = Side::BOTH.map(|side| factors.ring(side).map(|r| r.solver.memory));
             let mounted = &assembly.bearings[i];
-            let forecast = Forecasts::at_rest(forecast, &mounted.model);
+            let forecast = Forecasts::at_rest(forecast, (&scene.bearings[i].scene, &mounted.model));
             let found = &solution.bearings[i];
             let findings = Findings {
                 status: status.to_string(),

@@ -60,6 +60,14 @@ def test_rings_are_drawn_with_their_stress(runs):
     highest = max(float(np.max(trace.intensity)) for trace in figure.data)
     surface = np.unique(np.concatenate([step.mesh.surface(side) for side in ("inner", "outer")]))
     assert np.isclose(highest, 1e-6 * step["von_mises"][surface].max(), rtol=1e-6)
+    assert figure.layout.coloraxis.colorbar.title.text == "MPa"
+
+
+def test_rings_show_a_field_without_unit_as_it_is(runs):
+    # Wrong: which points are kept would be shown as 0.000001 MPa.
+    figure = raceway.figures.rings(runs.reduced_motion(), step=10, field="in_region")
+    assert max(float(np.max(trace.intensity)) for trace in figure.data) == 1.0
+    assert not figure.layout.coloraxis.colorbar.title.text
 
 
 def test_wrong_columns_are_refused_with_what_there_is(runs):

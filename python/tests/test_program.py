@@ -78,6 +78,8 @@ def test_progress_tells_steps_and_ends_with_the_last(tmp_path):
     assert {sign.total for sign in steps} == {2} and len(steps) >= 2
     assert [sign.done for sign in steps] == sorted(sign.done for sign in steps)
     assert all(sign.text and sign.seconds >= 0.0 for sign in steps)
+    # Wrong: a bar would stop before its end though all points are solved.
+    assert steps[-1].done == 2
 
 
 def test_warnings_come_with_the_progress(tmp_path):

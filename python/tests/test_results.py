@@ -99,6 +99,8 @@ def test_extremes_of_a_run_are_those_of_its_steps(runs):
     assert 0 < inside.sum() < inside.size
     assert np.array_equal(step["von_mises"][inside], whole.step(10)["von_mises"][inside])
     assert np.isnan(step["von_mises"][~inside]).all()
+    # Wrong: which points are kept would be a stress.
+    assert reduced.dataset(["in_region"], steps=[10])["in_region"].attrs["units"] == "1"
     with pytest.raises(KeyError, match='step 5 has no field "von_mises" over points; fields are displacement'):
         reduced.step(5)["von_mises"]
     expected = r"has no reduction.vtkhdf; a scene with \[output.reduction\] gives it"

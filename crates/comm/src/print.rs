@@ -1,10 +1,11 @@
 //! Lines for the user. Unlike `println!`, these do not panic when nobody reads any more (`raceway run ... | head`):
-//! the run goes on, as its results are files. A command may keep standard output for one answer, say less, or keep a
+//! the run goes on, as its results are files. What else keeps standard output from being written, such as a full disk,
+//! is remembered for the end. A command may keep standard output for one answer, say less, or keep a
 //! log of all that is said; lines that begin with `warning: `, `error: ` or `stopped: ` are always said.
 
 use std::fmt::Arguments;
 use std::fs::File;
-use std::io::Write;
+use std::io::{ErrorKind, Write};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use crate::communicator::Communicator;
@@ -26,6 +27,8 @@ struct Spoken {
     output: Vec<String>,
     /// Without their first word.
     warnings: Vec<String>,
+    /// Why standard output could not be written, if its reader was still there.
+    unwritten: Option<String>,
     log: Log,
 }
 
@@ -46,6 +49,7 @@ static SAID: Mutex<Spoken> = Mutex::new(Spoken {
     },
     output: Vec::new(),
     warnings: Vec::new(),
+    unwritten: None,
     log: Log::Off,
 });
 
@@ -138,7 +142,7 @@ pub fn line(text: Arguments<'_>) {
         Manner {
             is_answer_only: false,
             ..
-        } => drop(writeln!(std::io::stdout().lock(), "{line}")),
+        } => to_standard_output(&line),
         Manner { is_quiet: true, .. } if !has_to => {}
         _ => to_standard_error(&line),
     }
@@ -147,8 +151,24 @@ pub fn line(text: Arguments<'_>) {
 /// The one line of an answer, to standard output; rank 0 speaks for all.
 pub fn answer(text: &str) {
     if Communicator::world().is_root() {
-        let _ = writeln!(std::io::stdout().lock(), "{text}");
+        to_standard_output(text);
     }
+}
+
+/// A line to standard output as it is. That nobody reads any more is no error.
+pub fn to_standard_output(line: &str) {
+    let mut out = std::io::stdout().lock();
+    let written = writeln!(out, "{line}").and_then(|()| out.flush());
+    if let Err(error) = written
+        && error.kind() != ErrorKind::BrokenPipe
+    {
+        said().unwritten.get_or_insert(error.to_string());
+    }
+}
+
+/// Why standard output could not be written, the first time; None if it could, or if nobody reads any more.
+pub fn unwritten() -> Option<String> {
+    said().unwritten.clone()
 }
 
 /// A line about how it goes, to standard error; rank 0 speaks for all.

@@ -49,14 +49,17 @@ impl Results {
         }
         let [balls, shaft, energy, probes] =
             [BALLS, "shaft.csv", "energy.csv", "probes.csv"].map(|name| Table::read(dir, name));
-        let balls = balls?;
+        let (balls, shaft, energy, probes) = (balls?, shaft?, energy?, probes?);
+        // Tables of a run agree on what its steps are: the first that is there tells.
+        let tables = [&balls, &shaft, &energy, &probes];
+        let first = tables.into_iter().flatten().next();
         Ok(Results {
             dir: dir.to_path_buf(),
-            steps: balls.as_ref().map_or(Ok(Steps::Single), steps)?,
+            steps: first.map_or(Ok(Steps::Single), steps)?,
             balls,
-            shaft: shaft?,
-            energy: energy?,
-            probes: probes?,
+            shaft,
+            energy,
+            probes,
         })
     }
 
@@ -74,11 +77,11 @@ impl Results {
 
     /// What tells a step from others: the swept value or the time.
     pub fn name_of(&self, step: u64) -> anyhow::Result<String> {
-        let Some(balls) = &self.balls else {
+        let Some(table) = self.balls.as_ref().or(self.shaft.as_ref()) else {
             return Ok(format!("step {step}"));
         };
-        let row = balls.column("step")?.iter().position(|s| *s == step as f64);
-        Ok(match self.against(balls)? {
+        let row = table.column("step")?.iter().position(|s| *s == step as f64);
+        Ok(match self.against(table)? {
             None => "equilibrium".into(),
             Some((axis, values)) => row.map_or_else(|| format!("step {step}"), |row| axis.value(values[row])),
         })
@@ -115,17 +118,21 @@ pub fn swept_column(dir: &Path) -> anyhow::Result<Option<String>> {
     Ok(swept(head.get(2).unwrap_or_default()))
 }
 
-/// The swept value stands before the balls.
+/// The swept value stands before the first column of a table's own: the ball, the place of the shaft, an energy.
 fn swept(third: &str) -> Option<String> {
-    let is_swept = third != "ball" && third != "azimuth_rad";
-    is_swept.then(|| third.to_string())
+    let is_own = ["ball", "azimuth_rad", "x_m"].contains(&third) || third.ends_with("_j");
+    (!is_own).then(|| third.to_string())
 }
 
-fn steps(balls: &Table) -> anyhow::Result<Steps> {
-    if let Some(column) = swept(balls.names().get(2).map_or("", String::as_str)) {
+fn steps(table: &Table) -> anyhow::Result<Steps> {
+    // Of columns of probes, which have names of the user's, one cannot tell whether the first is a swept value.
+    let own = ["ball", "azimuth_rad", "x_m", "total_j"];
+    if own.iter().any(|name| table.find(name).is_some())
+        && let Some(column) = swept(table.names().get(2).map_or("", String::as_str))
+    {
         return Ok(Steps::Sweep(column));
     }
-    let steps = balls.column("step")?;
+    let steps = table.column("step")?;
     Ok(match steps.iter().any(|step| *step != steps[0]) {
         true => Steps::Times,
         false => Steps::Single,

@@ -67,14 +67,7 @@ fn fingerprint(bytes: &[u8]) -> u64 {
 
 /// The texts of a run that writes into `dir`.
 pub fn about(scene: &Scene, dir: &Path, warnings: &[String]) -> anyhow::Result<BTreeMap<String, String>> {
-    let absolute = |path: &Path| {
-        std::path::absolute(path).with_context(|| format!("cannot tell where {} is", path.display()))
-    };
-    let scene_path = absolute(&scene.path)?;
-    let (folder, name) = (scene_path.parent(), scene_path.file_name());
-    // Meshes are found from the folder of the scene as it was typed: a scene that is a link itself stays one.
-    let file = physical(folder.unwrap_or(Path::new("/"))).join(name.unwrap_or_default());
-    let file = relative(&file, &physical(&absolute(dir)?));
+    let file = path_from(dir, &scene.path)?;
     let mut texts = BTreeMap::from([
         (SCENE_FILE.to_string(), file.to_string_lossy().into_owned()),
         (OVERRIDES.to_string(), scene.overrides.join("\n")),
@@ -207,9 +200,38 @@ pub fn scene_file(dir: &Path, stored: &str) -> PathBuf {
         path.exists().then_some(path)
     };
     if path.exists() {
-        return path;
+        return tidy(&path);
     }
     by_text().unwrap_or(path)
+}
+
+/// The path that leads from a folder to a file, both given from here.
+pub fn path_from(dir: &Path, file: &Path) -> anyhow::Result<PathBuf> {
+    let absolute = |path: &Path| {
+        std::path::absolute(path).with_context(|| format!("cannot tell where {} is", path.display()))
+    };
+    let whole = absolute(file)?;
+    let (folder, name) = (whole.parent(), whole.file_name());
+    // Meshes are found from the folder of the scene as it was typed: a scene that is a link itself stays one.
+    let file = physical(folder.unwrap_or(Path::new("/"))).join(name.unwrap_or_default());
+    Ok(relative(&file, &physical(&absolute(dir)?)))
+}
+
+/// The path without steps into a folder and out again, for people: `scenes/a.toml` for `studies/../scenes/a.toml`.
+/// Left as it is where that would lead elsewhere, as through a link.
+pub fn tidy(path: &Path) -> PathBuf {
+    let mut tidy = PathBuf::new();
+    for part in path.components() {
+        let can_go_back = matches!(tidy.components().next_back(), Some(Component::Normal(_)));
+        match part {
+            Component::ParentDir if can_go_back => {
+                tidy.pop();
+            }
+            _ => tidy.push(part),
+        }
+    }
+    let same = tidy.canonicalize().ok() == path.canonicalize().ok();
+    if same { tidy } else { path.to_path_buf() }
 }
 
 /// A folder without links, as the system follows a path from it; as it is if it is not there.

@@ -12,6 +12,7 @@ use scene::{Analysis, Dynamic, FieldPrecision, Scene, StressOutput};
 
 use super::answer;
 use super::fields;
+use super::reduction_sizes::ReductionSizes;
 use super::region::Region;
 use crate::failure::Failure;
 
@@ -24,10 +25,6 @@ const ROUNDED_GAIN: u64 = 2;
 const FORCE_CHUNK: u64 = 128;
 /// Bytes of the index of such chunks.
 const FORCE_INDEX: u64 = 2_600;
-/// Numbers of a point in the file of `[output.reduction]`: four of seven stresses each, damage, cycles.
-const REDUCED_NUMBERS: u64 = 30;
-/// Bytes of a node in a state: three numbers of seven stresses each.
-const REDUCED_NODE: u64 = 3 * 7 * 8;
 /// Numbers of a stress tensor.
 const TENSOR: u64 = 6;
 /// Bytes of one ball in the state of a motion: position, velocity, and force, angle and approach of two contacts.
@@ -58,7 +55,13 @@ impl Forecast {
     /// Forecast for the steps after `done` (0 for a new run, whose start has a file too).
     pub fn new(scene: &Scene, model: &Model, done: u64) -> Forecast {
         let n_points = rows(&fields::bodies(model), |body| body.points.len());
-        let state = state_bytes(scene, model) + reduction_state_bytes(scene, model);
+        let reduced = ReductionSizes::new(scene, model);
+        let has_state = matches!(scene.analysis, Analysis::Dynamic(_) | Analysis::QuasiStatic(_));
+        let reduced_state = reduced
+            .as_ref()
+            .filter(|_| has_state)
+            .map_or(0, ReductionSizes::state);
+        let state = state_bytes(scene, model) + reduced_state as u64;
         // A region without a node is refused elsewhere.
         let region = Region::new(scene, model).unwrap_or_default();
         let displacement = displacement_bytes(scene, n_points, region.as_ref());
@@ -93,10 +96,9 @@ impl Forecast {
         };
         let every = scene.output.every;
         let fields = n_of(every.stress) * stress + n_of(every.displacement) * displacement;
-        let reduction = match scene.output.reduction {
-            Some(_) => n_points * REDUCED_NUMBERS * bytes_of(scene.output.precision),
-            None => 0,
-        };
+        let reduction = reduced.map_or(0, |sizes| {
+            sizes.file_numbers() as u64 * bytes_of(scene.output.precision)
+        });
         let cells = BALL_CELLS * model.geometry.n_balls as u64 + OTHER_CELLS;
         Forecast {
             step,
@@ -244,17 +246,6 @@ fn displacement_bytes(scene: &Scene, n_points: u64, region: Option<&Region>) -> 
         .filter(|region| region.fields().displacement)
         .map_or(1.0, |region| region.shares()[0]);
     ((n_points * VECTOR * bytes_of(scene.output.displacement)) as f64 * share) as u64
-}
-
-/// Bytes of what a restart state holds of `[output.reduction]`.
-fn reduction_state_bytes(scene: &Scene, model: &Model) -> u64 {
-    let rings = Side::BOTH.into_iter().filter_map(|side| model.ring(side));
-    match (scene.output.reduction, &scene.analysis) {
-        (Some(_), Analysis::Dynamic(_)) => {
-            REDUCED_NODE * rings.map(|ring| ring.mesh.n_nodes() as u64).sum::<u64>()
-        }
-        _ => 0,
-    }
 }
 
 /// Bytes of the stored state.

@@ -81,6 +81,15 @@ impl Failure {
 }
 
 impl Failure {
+    /// That standard output could not be written, such as to a full disk, if so.
+    pub fn unwritten() -> Option<Failure> {
+        print::unwritten().map(|cause| {
+            Failure::User(anyhow::anyhow!(
+                "cannot write to standard output: {cause}; lines of the answer are lost"
+            ))
+        })
+    }
+
     /// The same failure with where it happened in front.
     pub fn context(self, text: String) -> Failure {
         match self {

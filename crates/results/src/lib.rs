@@ -35,6 +35,7 @@ pub mod probe_places;
 pub mod probes;
 pub mod rainflow;
 pub mod reduction;
+pub mod reduction_sizes;
 mod region;
 pub mod rest_state;
 mod ring_stress;

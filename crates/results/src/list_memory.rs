@@ -12,11 +12,12 @@ use comm::Communicator;
 use contact::Side;
 use dynamics::modes::basis_sizes;
 use dynamics::{Model, MotionMemory, RingMemory, RingModel, forecast_motion_peak, forecast_peak};
-use scene::{Analysis, Modes};
+use scene::{Analysis, Modes, Scene};
 
 use crate::failure::Failure;
 use crate::memory::{
-    Bound, MOST_PER_NODE, bound, bytes_of_points, queued_steps, require, rings_at_once, rings_of, with_bodies,
+    Bound, MOST_PER_NODE, bound, bytes_of_points, queued_steps, reduction_memory, require, rings_at_once,
+    rings_of, with_bodies,
 };
 use crate::seat::tied;
 
@@ -32,6 +33,8 @@ const IN_MOTION_BYTES: usize = 520;
 /// A bearing of a list, with the memory of its rings as if it were alone.
 #[derive(Clone, Copy)]
 pub struct BearingMemory<'m> {
+    /// Its scene.
+    pub scene: &'m Scene,
     /// The bearing.
     pub model: &'m Model,
     /// Its rings at rest; None of a rigid ring.
@@ -102,7 +105,16 @@ pub fn forecast_list(analysis: &Analysis, bearings: &[BearingMemory<'_>]) -> (us
     let rest = program + lasting + making + points_of(analysis, bearings);
     let files = BEARING_BYTES * bearings.len().saturating_sub(1);
     let with_all = |peak: usize| with_bodies(peak, models_of(bearings)) + files;
-    (with_all(rest), steps_of(analysis, bearings).map(with_all))
+    let reductions: usize = bearings
+        .iter()
+        .map(|bearing| reduction_memory(bearing.scene, bearing.model))
+        .sum();
+    let steps = steps_of(analysis, bearings).map(|steps| with_all(steps) + reductions);
+    match analysis {
+        // A motion is reduced in its steps.
+        Analysis::Dynamic(_) => (with_all(rest), steps),
+        _ => (with_all(rest) + reductions, steps),
+    }
 }
 
 /// What load cases and instants hold beside the rings, of which several are solved at the same time, bytes.
@@ -213,7 +225,8 @@ fn vectors_of_list<'m>(wanted: &Modes, models: impl Iterator<Item = &'m Model>) 
 
 /// Fails if a list, of which nothing is factored yet, needs more memory than there is for it by its forecast, as
 /// [`crate::memory::require_memory`] does for one bearing.
-pub fn require_memory_of_list(analysis: &Analysis, models: &[&Model]) -> Result<(), Failure> {
+pub fn require_memory_of_list(analysis: &Analysis, listed: &[(&Scene, &Model)]) -> Result<(), Failure> {
+    let models: Vec<&Model> = listed.iter().map(|(_, model)| *model).collect();
     let rings = models.iter().flat_map(|model| model.rings.iter().flatten());
     let n_nodes: usize = rings.map(|ring| ring.mesh.n_nodes()).sum();
     let vectors = match analysis {
@@ -227,15 +240,20 @@ pub fn require_memory_of_list(analysis: &Analysis, models: &[&Model]) -> Result<
         return Ok(());
     };
     let mut bearings: Vec<BearingMemory<'_>> = Vec::new();
-    for &model in models {
+    for &(scene, model) in listed {
         let none = BearingMemory {
+            scene,
             model,
             rest: [None; 2],
             motion: [None; 2],
         };
         let known = bearings.iter().find(|known| known.is_of_type(&none)).copied();
         bearings.push(match known {
-            Some(known) => BearingMemory { model, ..known },
+            Some(known) => BearingMemory {
+                scene,
+                model,
+                ..known
+            },
             None => {
                 let (rest, motion) = rings_of(model)?;
                 BearingMemory { rest, motion, ..none }

@@ -14,9 +14,10 @@ use dynamics::{
     Model, MotionMemory, Numbers, Prepared, RingMemory, RingModel, forecast_motion_peak, forecast_peak,
 };
 use rustix::process::{Resource, getrlimit};
-use scene::{Analysis, Dynamic};
+use scene::{Analysis, Dynamic, Scene};
 
 use crate::failure::Failure;
+use crate::reduction_sizes::ReductionSizes;
 use crate::seat::tied;
 
 /// Steps between files up to which files wait for the disk.
@@ -28,7 +29,7 @@ pub(super) const QUEUE: usize = 1;
 const MOUNT_BYTES: usize = 40;
 
 /// Memory of both rings at rest and in motion: of a rigid ring None and Some(None).
-pub(crate) type RingsOfModel = ([Option<RingMemory>; 2], [Option<Option<MotionMemory>>; 2]);
+pub type RingsOfModel = ([Option<RingMemory>; 2], [Option<Option<MotionMemory>>; 2]);
 
 /// Forecasts of a run.
 #[derive(Clone, Copy, Debug, Default)]
@@ -41,29 +42,40 @@ pub struct Forecasts {
 
 impl Forecasts {
     /// Of a run of a model at rest.
-    pub fn at_rest(rings: [Option<RingMemory>; 2], model: &Model) -> Forecasts {
+    pub fn at_rest(rings: [Option<RingMemory>; 2], (scene, model): (&Scene, &Model)) -> Forecasts {
+        let peak = beside_rings(forecast_peak(rings, rings_at_once()), model);
         Forecasts {
             rings,
-            peak: Some(beside_rings(forecast_peak(rings, rings_at_once()), model)),
+            peak: Some(peak + reduction_memory(scene, model)),
         }
     }
 
     /// Of a number of points of a model, of which several are solved at the same time.
-    pub fn of_points(rings: [Option<RingMemory>; 2], model: &Model, n_points: u64) -> Forecasts {
+    pub fn of_points(
+        rings: [Option<RingMemory>; 2],
+        (scene, model): (&Scene, &Model),
+        n_points: u64,
+    ) -> Forecasts {
         let peak = forecast_peak(rings, rings_at_once()) + points_bytes(rings, model, n_points);
         Forecasts {
             rings,
-            peak: Some(beside_rings(peak, model)),
+            peak: Some(beside_rings(peak, model) + reduction_memory(scene, model)),
         }
     }
 
     /// Of a motion that begins with `rings` at rest.
-    pub fn of_motion(rings: [Option<RingMemory>; 2], motion: &Motion<'_>, dynamic: &Dynamic) -> Forecasts {
-        let start = forecast_peak(rings, rings_at_once());
+    pub fn of_motion(
+        rings: [Option<RingMemory>; 2],
+        motion: &Motion<'_>,
+        (scene, dynamic): (&Scene, &Dynamic),
+    ) -> Forecasts {
+        let model = motion.model();
+        let start = beside_rings(forecast_peak(rings, rings_at_once()), model);
         let steps = motion.memory_forecast(queued_steps(dynamic), rings_at_once());
+        let with_all = |steps| beside_rings(steps, model) + reduction_memory(scene, model);
         Forecasts {
             rings,
-            peak: steps.map(|steps| beside_rings(steps.max(start), motion.model())),
+            peak: steps.map(|steps| with_all(steps).max(start)),
         }
     }
 }
@@ -106,15 +118,16 @@ fn with_surfaces(rings: usize, model: &Model) -> usize {
 /// Forecast of the largest resident memory until there is an equilibrium, and in the steps of a motion, bytes. Of each
 /// ring `motion` has Some(None) when it is rigid and None when its steps are not forecast.
 pub fn forecast(
-    (analysis, model): (&Analysis, &Model),
+    (scene, model): (&Scene, &Model),
     rings: [Option<RingMemory>; 2],
     motion: [Option<Option<MotionMemory>>; 2],
 ) -> (usize, Option<usize>) {
+    let (analysis, reduction) = (&scene.analysis, reduction_memory(scene, model));
     let steps = match (analysis, motion) {
         (Analysis::Dynamic(dynamic), [Some(inner), Some(outer)]) => {
             let queued = queued_steps(dynamic);
             let steps = forecast_motion_peak([inner, outer], queued, rings_at_once());
-            Some(beside_rings(steps, model))
+            Some(beside_rings(steps, model) + reduction)
         }
         _ => None,
     };
@@ -124,7 +137,27 @@ pub fn forecast(
         Analysis::Static | Analysis::Dynamic(_) | Analysis::Modes(_) => 1,
     };
     let rest = forecast_peak(rings, rings_at_once()) + points_bytes(rings, model, points);
-    (beside_rings(rest, model), steps)
+    let rest = beside_rings(rest, model);
+    match analysis {
+        // A motion is reduced in its steps.
+        Analysis::Dynamic(_) => (rest, steps),
+        _ => (rest + reduction, steps),
+    }
+}
+
+/// What `[output.reduction]` of a scene takes while a run goes on, bytes: what is known, and for each step that is made
+/// or waits to be written the numbers of the file, and a state where there are some.
+pub(crate) fn reduction_memory(scene: &Scene, model: &Model) -> usize {
+    let Some(sizes) = ReductionSizes::new(scene, model) else {
+        return 0;
+    };
+    let file = size_of::<f64>() * sizes.file_numbers();
+    let under_way = match &scene.analysis {
+        Analysis::Dynamic(dynamic) => (1 + queued_steps(dynamic)) * (sizes.state() + file),
+        Analysis::QuasiStatic(_) => sizes.state() + file,
+        Analysis::Static | Analysis::Sweep(_) | Analysis::Modes(_) => file,
+    };
+    sizes.known() + under_way
 }
 
 /// The peak of rings with what is there besides.
@@ -174,19 +207,19 @@ pub(crate) const MOST_PER_NODE: u64 = 50_000;
 
 /// Fails if a run of this model, of which nothing is factored yet, needs more memory than there is for it by its
 /// forecast. That is made only where memory may be short: it costs the analysis of the matrices.
-pub fn require_memory(analysis: &Analysis, model: &Model) -> Result<(), Failure> {
+pub fn require_memory(scene: &Scene, model: &Model) -> Result<(), Failure> {
     let n_nodes: usize = model.rings.iter().flatten().map(|ring| ring.mesh.n_nodes()).sum();
     let short = bound().filter(|bound| bound.bytes < MOST_PER_NODE * n_nodes as u64);
     let Some(bound) = short.filter(|_| Communicator::world().size() == 1) else {
         return Ok(());
     };
     let (statics, motion) = rings_of(model)?;
-    let (start, steps) = forecast((analysis, model), statics, motion);
+    let (start, steps) = forecast((scene, model), statics, motion);
     require(steps.unwrap_or(0).max(start), bound)
 }
 
 /// Memory of the rings of a model at rest and in motion, of which nothing is factored yet.
-pub(crate) fn rings_of(model: &Model) -> Result<RingsOfModel, Failure> {
+pub fn rings_of(model: &Model) -> Result<RingsOfModel, Failure> {
     let (mut statics, mut motion) = ([None; 2], [Some(None); 2]);
     for side in Side::BOTH {
         let Some(ring) = model.ring(side) else { continue };

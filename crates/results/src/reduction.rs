@@ -19,17 +19,18 @@ use anyhow::{anyhow, ensure};
 use checkpoint::{PointTable, StateArray, TableField};
 use comm::print;
 use contact::Side;
-use dynamics::{Model, RACEWAY_GROUP};
+use dynamics::Model;
 use fem::stress::von_mises;
 use rayon::prelude::*;
-use scene::{DamageNodes, DamageStress, KeptFields, Scene, StressOutput};
+use scene::{DamageStress, KeptFields, Scene, StressOutput};
 use timer::Laps;
 
 use self::extremes::Extremes;
 use self::histories::NodeHistories;
 use super::about::STRESS;
-use super::bodies::{bodies_of, body_fields};
+use super::bodies::body_fields;
 use super::fields::shown_ring;
+use super::reduction_sizes::{counted_nodes, n_points};
 use super::ring_stress::{Gathered, RingStress};
 use super::shown::{Shown, Turn};
 use super::state_arrays::Arrays;
@@ -104,27 +105,14 @@ impl StressReduction {
     /// Nothing yet.
     pub fn new(scene: &Scene, model: &Model, reduced: &ReducedStress) -> StressReduction {
         let asked = reduced.asked;
-        let (mut n_nodes, mut counted) = (0, Vec::new());
-        for side in Side::BOTH {
-            let Some(ring) = model.ring(side) else { continue };
-            match asked.damage.map(|damage| damage.nodes) {
-                Some(DamageNodes::All) => counted.extend(n_nodes..n_nodes + ring.mesh.n_nodes()),
-                Some(DamageNodes::Raceways) => {
-                    let nodes = ring.mesh.group_nodes(RACEWAY_GROUP);
-                    counted.extend(nodes.into_iter().map(|node| n_nodes + node));
-                }
-                None => {}
-            }
-            n_nodes += ring.mesh.n_nodes();
-        }
-        let of_bodies: usize = bodies_of(model).iter().map(|body| body.mesh.n_nodes()).sum();
-        let n_points = n_nodes + model.geometry.n_balls + of_bodies;
         StressReduction {
             asked,
             stress: reduced.stress.clone(),
             steps: [0; 3],
-            extremes: vec![Extremes::NONE; n_points],
-            histories: asked.damage.map(|damage| NodeHistories::new(damage, counted)),
+            extremes: vec![Extremes::NONE; n_points(model)],
+            histories: asked
+                .damage
+                .map(|damage| NodeHistories::new(damage, counted_nodes(model, damage))),
             has_near_field: scene.stress.near_field_reach.is_some(),
         }
     }

@@ -79,7 +79,7 @@ fn whole(
     let probes = PlacedProbes::new(scene, &model, &tags)?;
     let region = Region::new(scene, &model)?;
     test(&model)?;
-    require_memory(&scene.analysis, &model)?;
+    require_memory(scene, &model)?;
     let survey = Survey {
         probes,
         doubts,

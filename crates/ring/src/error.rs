@@ -119,11 +119,13 @@ impl RingError {
     }
 
     /// Whether the cause is in what a user gave, not in its solution: a surface that holds nothing, an element, too
-    /// many sectors.
+    /// many sectors, a backend that cannot be.
     pub fn is_of_input(&self) -> bool {
         matches!(
             self,
             RingError::NotHeld { .. }
+                | RingError::NotPeriodic { .. }
+                | RingError::ModesOfDefect { .. }
                 | RingError::NoStressStiffening { .. }
                 | RingError::Fem { .. }
                 | RingError::Body { .. }

@@ -5,7 +5,7 @@
 //!
 //! Makers write a suffix in many ways: `7010C`, `7010 CD/P4A`, `7010-C-T-P4S`; `6203-2RS1/C3`, `6203ZZC3`. Spaces,
 //! dashes and strokes part its words. The first word of an angular contact bearing says its angle, C2 to C5 anywhere
-//! the clearance of a deep groove bearing.
+//! the clearance of a deep groove bearing. HC before anything else in a word says that the balls are ceramic.
 
 use input::ten_digits;
 
@@ -90,6 +90,8 @@ pub struct Listed {
     pub group: &'static str,
     /// Where the group is from.
     pub group_note: String,
+    /// The word of the suffix that says that its balls are ceramic.
+    pub hybrid: Option<String>,
 }
 
 /// Reads a designation, or says what was expected.
@@ -139,6 +141,11 @@ pub fn listed(designation: &str) -> Result<Listed, String> {
         angle_note,
         group,
         group_note,
+        // HC, alone or before a class of precision as in HCP4A.
+        hybrid: words
+            .iter()
+            .find(|word| word.starts_with("HC"))
+            .map(|word| word.to_string()),
     })
 }
 
@@ -181,6 +188,14 @@ fn group_of(words: &[&str]) -> (&'static str, String) {
         None => "the middle of group N, ISO 5753-1".to_owned(),
     };
     ("N", note)
+}
+
+/// Material of the balls of a bearing, and a note on it.
+pub fn material_of_balls(listed: Option<&Listed>) -> (&'static str, String) {
+    match listed.and_then(|listed| listed.hybrid.as_ref()) {
+        Some(word) => ("silicon nitride", format!("suffix {word}: a hybrid bearing")),
+        None => ("bearing steel", "\"silicon nitride\" for a hybrid bearing".into()),
+    }
 }
 
 /// Middle of a group of radial clearance, mm.
@@ -231,6 +246,22 @@ mod tests {
             assert_eq!(
                 (found.degrees, found.angle_note.as_str()),
                 (Some(degrees), note),
+                "{designation}"
+            );
+        }
+    }
+
+    /// Wrong: a hybrid bearing would have balls of steel, which are two and a half times as heavy, without a word.
+    #[test]
+    fn a_suffix_says_that_balls_are_ceramic() {
+        for (designation, word) in [
+            ("7014 CD/HCP4A", Some("HCP4A")),
+            ("6206-2RS/HC5C3", Some("HC5C3")),
+            ("7014 CD/P4A", None),
+        ] {
+            assert_eq!(
+                listed(designation).unwrap().hybrid.as_deref(),
+                word,
                 "{designation}"
             );
         }

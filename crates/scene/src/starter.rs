@@ -14,7 +14,7 @@ use std::f64::consts::PI;
 
 use input::{ANGLE, FORCE, LENGTH, Quantity, ten_digits};
 
-use crate::designations::{DESIGNATIONS, Listed, clearance_of, listed};
+use crate::designations::{DESIGNATIONS, Listed, clearance_of, listed, material_of_balls};
 
 /// What is known of the bearing.
 #[derive(Clone, Debug, Default)]
@@ -75,6 +75,8 @@ struct Sketch {
     pitch: SketchNumber,
     kind: BearingKind,
     angle_note: String,
+    /// Material of the balls, and a note on it.
+    material: (&'static str, String),
 }
 
 /// Name of the file: that of the bearing, without what file names do not have.
@@ -147,6 +149,7 @@ fn find(wanted: &StarterRequest) -> Result<Sketch, String> {
         pitch,
         kind,
         angle_note,
+        material: material_of_balls(listed.as_ref()),
     })
 }
 
@@ -245,11 +248,7 @@ fn table_of_bearing(b: &Sketch) -> String {
             "\"bearing steel\"".into(),
             "or \"M50\", \"440C\", or a table of numbers",
         ),
-        line(
-            "balls",
-            "\"bearing steel\"".into(),
-            "\"silicon nitride\" for a hybrid bearing",
-        ),
+        line("balls", format!("\"{}\"", b.material.0), &b.material.1),
         "\n[contact]\n".to_string(),
         line("mode", "\"patch\"".into(), "exact groove on any mesh"),
     ]

@@ -6,6 +6,7 @@ use anyhow::{Context, anyhow, bail};
 use clap::Args;
 use comm::print;
 use input::shell_word;
+use results::about::tidy;
 use results::failure::Failure;
 
 use super::format::CostKind;
@@ -41,6 +42,10 @@ pub fn advise(question: &Question) -> Result<(), Failure> {
     let folder = whole.parent().unwrap_or(Path::new("."));
     for point in &mut report.points {
         point.set = arguments(&point.set, folder);
+    }
+    if let Some(file) = &report.scene_file {
+        let from_here = path.parent().unwrap_or(Path::new("")).join(file);
+        report.scene = tidy(&from_here).display().to_string();
     }
     let kind = question.cost.unwrap_or(report.cost);
     let names = asked(&report, question.quantity.as_deref(), &path)?;

@@ -1,9 +1,10 @@
 //! From the text of a study to a plan: every name, range and reference is checked before anything runs.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::path::{Component, Path, PathBuf};
+use std::path::Path;
 
 use anyhow::{Context, bail};
+use results::about::tidy;
 
 use super::format::{OneOrMany, RawAxis, RawQuantity, RawReference, RawSignals, RawStudy, Take};
 use super::plan::{AxisValue, Plan, Reference, Signals, Source, StudyAxis, StudyQuantity, grid};
@@ -97,23 +98,6 @@ fn signals(raw: RawSignals) -> anyhow::Result<Signals> {
         table,
         columns: raw.columns,
     })
-}
-
-/// The path without steps into a folder and out again, for people: `scenes/a.toml` for `studies/../scenes/a.toml`.
-/// Left as it is where that would lead elsewhere, as through a link.
-fn tidy(path: &Path) -> PathBuf {
-    let mut tidy = PathBuf::new();
-    for part in path.components() {
-        let can_go_back = matches!(tidy.components().next_back(), Some(Component::Normal(_)));
-        match part {
-            Component::ParentDir if can_go_back => {
-                tidy.pop();
-            }
-            _ => tidy.push(part),
-        }
-    }
-    let same = tidy.canonicalize().ok() == path.canonicalize().ok();
-    if same { tidy } else { path.to_path_buf() }
 }
 
 fn whole(key: &str, value: i64, max: i64) -> anyhow::Result<usize> {

@@ -20,6 +20,9 @@ pub struct StudyReport {
     pub title: String,
     /// The scene of all points, as the study has it.
     pub scene: String,
+    /// The same from the folder of this file; absent in those of earlier versions.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub scene_file: Option<String>,
     /// Day of the table, UTC.
     pub date: String,
     /// The machine that made the table.

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use anyhow::Context;
+use results::about::path_from;
 
 use super::errors::{Readings, describe, judge, mark_front, orders};
 use super::machine;
@@ -46,7 +47,8 @@ pub fn collect(plan: &Plan, out: &Path) -> anyhow::Result<StudyReport> {
         judge_all(plan, quantity, &readings, &mut points);
         mark_front(&mut points, &quantity.name, plan.cost);
     }
-    let report = report(plan, &records, points);
+    let scene_file = path_from(out, &plan.scene)?;
+    let report = report(plan, &records, points, &scene_file);
     record::write_whole(&out.join(JSON), &record::to_json(&report)?)?;
     record::write_whole(&out.join(CSV), &csv_text(&report)?)?;
     record::write_whole(&out.join(MARKDOWN), &markdown::text(&report))?;
@@ -97,11 +99,17 @@ fn judge_all(plan: &Plan, quantity: &StudyQuantity, readings: &Readings, points:
 }
 
 /// The report of judged points.
-fn report(plan: &Plan, records: &[Option<Record>], points: Vec<PointReport>) -> StudyReport {
+fn report(
+    plan: &Plan,
+    records: &[Option<Record>],
+    points: Vec<PointReport>,
+    scene_file: &Path,
+) -> StudyReport {
     StudyReport {
         schema: SCHEMA,
         title: plan.title.clone(),
         scene: plan.scene.display().to_string(),
+        scene_file: Some(scene_file.display().to_string()),
         date: machine::date(),
         machine: machine::describe(),
         programs: programs(records),

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from .errors import MissingPackage, ResultsError
-from .results import Results
+from .results import Results, unit_of_field
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -154,8 +154,10 @@ def rings(
     if values.ndim != 1:
         raise ValueError(f"the field {field} has {values.shape[1]} components a point; one is expected")
     places = shot.mesh.points + (scale * shot["displacement"] if scale else 0.0)
-    # Every field of a step with one number a point is a stress.
-    highest = 1e-6 * float(np.nanmax(values))
+    unit = unit_of_field(field)
+    factor, unit = (1e-6, "MPa") if unit == "Pa" else (1.0, unit.removeprefix("1"))
+    values = factor * values
+    highest = float(np.nanmax(values))
     figure = _figure(f"{FIELDS.get(field, field.replace('_', ' '))}, step {shot.number}", "", "")
     for ring in SIDES:
         triangles = shot.mesh.surface(ring)
@@ -163,10 +165,10 @@ def rings(
         i, j, k = corners.reshape(-1, 3).T
         x, y, z = 1e3 * places[used].T
         figure.add_mesh3d(
-            x=x, y=y, z=z, i=i, j=j, k=k, intensity=1e-6 * values[used], name=ring,
-            coloraxis="coloraxis", hovertemplate="%{intensity:.4g} MPa<extra>" + ring + "</extra>",
+            x=x, y=y, z=z, i=i, j=j, k=k, intensity=values[used], name=ring,
+            coloraxis="coloraxis", hovertemplate=f"%{{intensity:.4g}} {unit}<extra>" + ring + "</extra>",
         )  # fmt: skip
-    bar = {"title": {"text": "MPa"}}
+    bar = {"title": {"text": unit}}
     figure.update_layout(coloraxis={"colorscale": "Viridis", "colorbar": bar, "cmin": 0.0, "cmax": highest})
     figure.update_scenes(aspectmode="data", xaxis_title="x, mm", yaxis_title="y, mm", zaxis_title="z, mm")
     return figure

@@ -148,7 +148,7 @@ def command(
     reader = threading.Thread(target=_collect, args=(process.stdout, printed), daemon=True)
     reader.start()
     try:
-        notes = _follow(process.stderr, report)
+        notes, last = _follow(process.stderr, report)
         code = process.wait()
     except BaseException:
         process.send_signal(signal.SIGINT)
@@ -160,6 +160,9 @@ def command(
     for line in printed:
         if line.startswith(WARNINGS) and line.rstrip("\n") not in notes:
             report(Progress(0, 0, math.nan, "", line.rstrip("\n").split(": ", 1)[1]))
+    if last.done < last.total:
+        # The program says what it does now; that it has done all of it, its end says.
+        report(Progress(last.total, last.total, last.seconds, "finished"))
     return "".join(printed)
 
 
@@ -212,8 +215,8 @@ def _collect(stream: IO[str], into: list[str]) -> None:
     into.extend(stream)
 
 
-def _follow(stream: IO[str], report: Callable[[Progress], object]) -> list[str]:
-    """Reports progress while the program runs; returns the last lines that are no progress."""
+def _follow(stream: IO[str], report: Callable[[Progress], object]) -> tuple[list[str], Progress]:
+    """Reports progress while the program runs; returns the last lines that are no progress, and the last progress."""
     notes: list[str] = []
     last = Progress(0, 0, 0.0, "")
     for line in stream:
@@ -228,7 +231,7 @@ def _follow(stream: IO[str], report: Callable[[Progress], object]) -> list[str]:
         elif POINT.match(line):
             report(Progress(0, 0, math.nan, line))
         notes = [*notes[1 - KEPT_LINES :], line]
-    return notes
+    return notes, last
 
 
 def _failure(code: int, notes: list[str]) -> ProgramError:

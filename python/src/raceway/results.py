@@ -206,9 +206,22 @@ def open_results(folder: str | os.PathLike[str]) -> Results:
 
 
 def _over_steps(name: str, values: Any) -> tuple[tuple[str, ...], Any, dict[str, str]]:
-    unit = {"displacement": "m", "force_inner": "N", "force_outer": "N"}.get(name, "Pa")
     last = {3: ("vector",), 6: ("tensor",)}.get(values.shape[-1], ("component",)) if values.ndim == 3 else ()
-    return ("step", "point", *last), values, {"units": unit}
+    return ("step", "point", *last), values, {"units": unit_of_field(name)}
+
+
+def unit_of_field(name: str) -> str:
+    """The unit of a field over points of a step."""
+    units = {
+        "displacement": "m",
+        "rotation": "rad",
+        "velocity": "m/s",
+        "acceleration": "m/s2",
+        "force_inner": "N",
+        "force_outer": "N",
+        "in_region": "1",
+    }
+    return units.get(name, "Pa")
 
 
 def _with_arrays(document: dict[str, Any]) -> dict[str, Any]:

@@ -6,6 +6,10 @@ use crate::mesh::Mesh;
 use crate::origin::Origin;
 use crate::torus::Torus;
 
+/// What to do where the corners of elements lie on the groove, but nodes in the middle of their sides do not.
+const STRAIGHT: &str = "only mid-side nodes are off, so that the elements of second order have straight sides: mesh \
+                        the geometry itself with Mesh.SecondOrderLinear = 0, which puts them on the groove";
+
 /// Every node of `group` must lie on `torus` within `tolerance`, m. The group must exist ([`crate::require_groups`]).
 pub fn check_torus(
     mesh: &Mesh,
@@ -29,8 +33,15 @@ pub fn check_torus(
         return Ok(());
     }
     let points: Vec<[f64; 3]> = nodes.iter().map(|&n| mesh.nodes[n]).collect();
+    let n_corners = mesh.kind.facet_kind().n_corners();
+    let mut facets = mesh.group(group).iter();
+    let is_on = |n: usize| torus.distance(mesh.nodes[n]).abs() <= tolerance;
+    let is_straight = facets.all(|&facet| mesh.facet_nodes(facet).take(n_corners).all(is_on));
     Err(MeshError::OffTorus {
-        advice: remedy(&points, torus, tolerance),
+        advice: match is_straight {
+            true => STRAIGHT.into(),
+            false => remedy(&points, torus, tolerance),
+        },
         path: origin.path.clone(),
         group: group.into(),
         node: origin.node_tags[worst.0],

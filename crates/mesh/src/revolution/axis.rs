@@ -8,18 +8,29 @@ use crate::mesh::Mesh;
 /// An axis other than z.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OwnAxis {
-    /// Where it meets the plane z = 0, (x, y), m.
-    pub foot: [f64; 2],
+    /// A point on it, m: where it meets the plane z = 0, or the centre of the volume if it lies across z.
+    pub point: [f64; 3],
     /// Its angle with z, rad.
     pub tilt: f64,
     /// Azimuth towards which its upper end is tilted, rad, in [0, 2 pi).
     pub azimuth: f64,
 }
 
+impl OwnAxis {
+    /// Whether it is within `tolerance` (m) of z all along a mesh.
+    pub(super) fn is_z(&self, mesh: &Mesh, tolerance: f64) -> bool {
+        let [x, y, _] = self.point;
+        let height = mesh.nodes.iter().map(|x| x[2].abs()).fold(0.0, f64::max);
+        x.hypot(y) + height * self.tilt.tan().abs() <= tolerance
+    }
+}
+
 /// Sweeps of Jacobi's method: it converges by squares.
 const SWEEPS: usize = 12;
+/// Cosine of the angle with z, 84 degrees, from which an axis lies across z: where it meets z = 0 may be far away.
+const LEAST_COSINE: f64 = 0.1;
 
-/// The axis of a mesh by the moments of inertia of its volume, and the mesh about z. None where it lies across z.
+/// The axis of a mesh by the moments of inertia of its volume, and the mesh about z.
 pub(super) fn about_own_axis(mesh: &Mesh) -> Option<(OwnAxis, Mesh)> {
     let (centre, moments) = volume_moments(mesh);
     let (values, vectors) = eigenpairs(moments);
@@ -30,12 +41,12 @@ pub(super) fn about_own_axis(mesh: &Mesh) -> Option<(OwnAxis, Mesh)> {
     if along[2] < 0.0 {
         along = along.map(|c| -c);
     }
-    if along[2] < 0.1 {
-        return None;
-    }
-    let height = centre[2] / along[2];
+    let point = match along[2] > LEAST_COSINE {
+        true => [0, 1, 2].map(|i| centre[i] - centre[2] / along[2] * along[i]),
+        false => centre,
+    };
     let axis = OwnAxis {
-        foot: [centre[0] - height * along[0], centre[1] - height * along[1]],
+        point,
         tilt: along[0].hypot(along[1]).atan2(along[2]),
         azimuth: along[1].atan2(along[0]).rem_euclid(TAU),
     };
@@ -43,7 +54,7 @@ pub(super) fn about_own_axis(mesh: &Mesh) -> Option<(OwnAxis, Mesh)> {
     let across = across(along);
     let other = cross(along, across);
     moved.nodes.iter_mut().for_each(|x| {
-        let d = [x[0] - axis.foot[0], x[1] - axis.foot[1], x[2]];
+        let d = [0, 1, 2].map(|i| x[i] - point[i]);
         *x = [across, other, along].map(|e| dot(e, d));
     });
     Some((axis, moved))
@@ -51,12 +62,12 @@ pub(super) fn about_own_axis(mesh: &Mesh) -> Option<(OwnAxis, Mesh)> {
 
 /// A direction of length 1 across another one.
 fn across(along: [f64; 3]) -> [f64; 3] {
-    // The axis is not x: it is within 84 degrees of z.
-    let raw = [
-        1.0 - along[0] * along[0],
-        -along[0] * along[1],
-        -along[0] * along[2],
-    ];
+    // That of x, y and z which is farthest from it.
+    let far = (0..3)
+        .min_by(|&a, &b| along[a].abs().total_cmp(&along[b].abs()))
+        .unwrap_or(0);
+    let mut raw = along.map(|c| -c * along[far]);
+    raw[far] += 1.0;
     let length = dot(raw, raw).sqrt();
     raw.map(|c| c / length)
 }

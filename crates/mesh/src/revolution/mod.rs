@@ -78,6 +78,9 @@ pub fn find_revolution(mesh: &Mesh, tolerance: f64) -> Result<Revolution, NotRev
     let Some((axis, moved)) = axis::about_own_axis(mesh) else {
         return Err(off);
     };
+    if axis.is_z(mesh, tolerance) {
+        return Err(off);
+    }
     match search(&MeshSurface::new(&moved), tolerance) {
         Ok(_) => Err(NotRevolved::OtherAxis(axis)),
         Err(_) => Err(off),
@@ -252,12 +255,11 @@ fn across(
     tolerance: f64,
 ) -> Option<(f64, usize)> {
     let places = || corners.iter().map(|&node| surface.points[node as usize].place());
-    // A corner of the outline is on two pieces, so that those of all corners are tried.
-    let has_all = |&node: &u32| {
-        let piece = &outline[pieces[node as usize]];
-        places().all(|place| piece.nearest(place).1 <= 2.0 * tolerance)
-    };
-    if corners.iter().any(has_all) {
+    let has_all = |piece: &OutlinePiece| places().all(|place| piece.nearest(place).1 <= 2.0 * tolerance);
+    // A corner of the outline is on two pieces, and round-off decides which is nearest: a facet between two such
+    // corners may lie on a piece that is nearest to neither, so that the others are tried too.
+    let mut near = corners.iter().map(|&node| &outline[pieces[node as usize]]);
+    if near.any(has_all) || outline.iter().any(has_all) {
         return None;
     }
     let sum = places().fold([0.0; 2], |sum, place| [sum[0] + place[0], sum[1] + place[1]]);

@@ -124,10 +124,13 @@ impl fmt::Display for NotRevolved {
             ),
             NotRevolved::OtherAxis(axis) => write!(
                 f,
-                "it is a body of revolution about another axis: that one meets z = 0 at x = {:.6} mm, y = {:.6} mm and \
-                 is tilted by {:.6} deg towards azimuth {:.2} deg; turn and move the mesh so that its axis is z",
-                1e3 * axis.foot[0],
-                1e3 * axis.foot[1],
+                "it is a body of revolution about another axis: that one passes x = {:.6} mm, y = {:.6} mm, \
+                 z = {:.6} mm and is tilted by {:.6} deg towards azimuth {:.2} deg; turn and move the mesh so that its \
+                 axis is z",
+                // Without a minus before zero.
+                1e3 * axis.point[0] + 0.0,
+                1e3 * axis.point[1] + 0.0,
+                1e3 * axis.point[2] + 0.0,
                 axis.tilt.to_degrees(),
                 axis.azimuth.to_degrees()
             ),

@@ -98,8 +98,9 @@ fn rings_of_sectors_give_their_own_section() {
     }
 }
 
-/// A section with chamfers at the bore and at one face, and a step in the left shoulder; also its corners.
-fn stepped() -> (Section, Vec<[f64; 2]>) {
+/// A section with chamfers at the bore and at one face, and a step in the left shoulder; also its corners. It has
+/// `rows` elements from the bore to the shoulders.
+fn stepped(rows: u32) -> (Section, Vec<[f64; 2]>) {
     let bore = |z: f64| 25e-3 + (0.5e-3 - (8e-3 - z.abs())).max(0.0);
     let top = |z: f64| match z {
         z if z < -5.0e-3 => 29.2e-3,
@@ -114,7 +115,6 @@ fn stepped() -> (Section, Vec<[f64; 2]>) {
     let mut stations = vec![-8e-3, -7.5e-3, -6.5e-3, -5.0e-3, -4.6e-3, -4.3e-3];
     stations.extend((0..=12).map(|i| -end + 2.0 * end * f64::from(i) / 12.0));
     stations.extend([4.6e-3, 6e-3, 7.5e-3, 7.6e-3, 8e-3]);
-    let rows = 4;
     let mut points = Vec::new();
     for &z in &stations {
         points.extend((0..=rows).map(|i| {
@@ -161,7 +161,7 @@ fn stepped() -> (Section, Vec<[f64; 2]>) {
 /// Wrong: chamfers and steps would be rounded off or left out.
 #[test]
 fn chamfers_and_steps_are_corners_of_the_outline() {
-    let (section, corners) = stepped();
+    let (section, corners) = stepped(4);
     let mesh = revolve(&section, 72, ElementKind::Hex8, &[]).unwrap();
     let found = find(&mesh).unwrap();
     let origin = origin_of(&mesh);
@@ -205,6 +205,25 @@ fn chamfers_and_steps_are_corners_of_the_outline() {
     )
     .unwrap_err();
     assert_eq!(error.to_string(), "sectors is 2; expected 3 to 100000");
+}
+
+/// Wrong: whether `mesh --revolve-like` took a ring with chamfers or faces of one element would depend on the angle by
+/// which the mesh is turned, that is on round-off.
+#[test]
+fn faces_and_chamfers_of_one_element_are_found_at_any_angle() {
+    for rows in [1, 4] {
+        let (section, corners) = stepped(rows);
+        let upright = revolve(&section, 24, ElementKind::Hex8, &[]).unwrap();
+        for angle in [0.0_f64, 0.3, 0.71, 1.1, 1.9, 2.5, 3.0, 4.0] {
+            let (sin, cos) = angle.sin_cos();
+            let mut mesh = upright.clone();
+            mesh.nodes
+                .iter_mut()
+                .for_each(|x| *x = [cos * x[0] - sin * x[1], sin * x[0] + cos * x[1], x[2]]);
+            let found = find(&mesh).unwrap_or_else(|reason| panic!("{rows} rows, {angle} rad: {reason}"));
+            assert_eq!(found.outline.len(), corners.len(), "{rows} rows, {angle} rad");
+        }
+    }
 }
 
 /// Wrong: a ring with a keyway or a hole would lose it in silence.
@@ -296,7 +315,7 @@ fn a_tilted_or_shifted_ring_is_told_its_own_axis() {
     };
     // The moments of the elements are those of a body of revolution up to their chords.
     assert!((axis.tilt - tilt).abs() < 1e-6, "{reason}");
-    assert!((0..2).all(|i| (axis.foot[i] - foot[i]).abs() < 1e-7), "{reason}");
+    assert!((0..2).all(|i| (axis.point[i] - foot[i]).abs() < 1e-7), "{reason}");
     assert!(axis.azimuth.min(TAU - axis.azimuth) < 1e-4, "{reason}");
     assert!(
         reason
@@ -304,6 +323,28 @@ fn a_tilted_or_shifted_ring_is_told_its_own_axis() {
             .contains("turn and move the mesh so that its axis is z"),
         "{reason}"
     );
+}
+
+/// Wrong: a ring along x or y would be told which of its nodes are off a section about z, not that it lies along x.
+#[test]
+fn a_ring_along_x_or_y_is_told_so() {
+    let upright = revolved(RingSide::Inner, 45, ElementKind::Hex8);
+    let about_x = |x: [f64; 3]| [x[2] + 2e-3, x[0], x[1]];
+    let about_y = |x: [f64; 3]| [x[1], x[2] + 2e-3, x[0]];
+    let cases: [(&dyn Fn([f64; 3]) -> [f64; 3], usize, f64); 2] = [(&about_x, 0, 0.0), (&about_y, 1, 90.0)];
+    for (turned, along, azimuth) in cases {
+        let mut mesh = upright.clone();
+        mesh.nodes.iter_mut().for_each(|x| *x = turned(*x));
+        let reason = find(&mesh).unwrap_err();
+        let NotRevolved::OtherAxis(axis) = reason else {
+            panic!("{reason}")
+        };
+        assert!((axis.tilt.to_degrees() - 90.0).abs() < 1e-6, "{reason}");
+        // Either end may be the upper one.
+        let off = axis.azimuth - f64::to_radians(azimuth);
+        assert!(off.sin().abs() < 1e-6, "{reason}");
+        assert!(axis.point[(along + 1) % 3].abs() < 1e-9, "{reason}");
+    }
 }
 
 /// Wrong: a bore that is held over half of the circle would be held all round in the new mesh, or not at all.

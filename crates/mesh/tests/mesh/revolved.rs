@@ -137,6 +137,27 @@ fn another_torus_is_refused_with_its_worst_node() {
     assert!(error.contains("no facet group \"track\""), "{error}");
 }
 
+/// Wrong: a user whose mesh has straight sides would be sent to compare diameters that are right.
+#[test]
+fn straight_sides_of_a_fine_mesh_are_named() {
+    let mut mesh = revolved(RingSide::Outer, 18, ElementKind::Hex20);
+    for facet in mesh.group("raceway").to_vec() {
+        let nodes: Vec<usize> = mesh.facet_nodes(facet).collect();
+        for i in 0..4 {
+            let [a, b] = [nodes[i], nodes[(i + 1) % 4]].map(|node| mesh.nodes[node]);
+            mesh.nodes[nodes[4 + i]] = [0, 1, 2].map(|c| 0.5 * (a[c] + b[c]));
+        }
+    }
+    let origin = Origin::of_generated("m.msh", 1e-3, &mesh);
+    let torus = ring(RingSide::Outer).geometry().unwrap().torus();
+    let error = check_torus(&mesh, &origin, "raceway", &torus, 1e-6)
+        .unwrap_err()
+        .to_string();
+    let advice = "only mid-side nodes are off, so that the elements of second order have straight sides: mesh the \
+                  geometry itself with Mesh.SecondOrderLinear = 0, which puts them on the groove";
+    assert!(error.contains(advice), "{error}");
+}
+
 /// If this failed, a mesh in millimetres taken for metres would be solved a thousand times too large.
 #[test]
 fn a_wrong_unit_is_told_with_the_right_one() {

@@ -69,6 +69,10 @@ pub struct MeshedSection {
 const SHOULDER_HEIGHT: f64 = 0.2;
 /// Angle from the free contact to the edge of such a shoulder, rad: 20 degrees.
 const BEYOND_CONTACT: f64 = std::f64::consts::PI / 9.0;
+/// Largest growth from one element to the next.
+const MOST_GRADING: f64 = 3.0;
+/// Most by which sizes of elements through the thickness may differ.
+const LARGEST_SHARE: f64 = 1e4;
 /// More elements than this in one direction is a slip of the keyboard.
 const MAX_ELEMENTS: i64 = 1000;
 /// The same round the ring.
@@ -145,11 +149,12 @@ impl RawSection {
         let grading = self.grading.unwrap_or(1.0);
         let key = format!("{table}.grading");
         problems.require(
-            (1.0..=3.0).contains(&grading),
+            (1.0..=MOST_GRADING).contains(&grading),
             &key,
             grading,
             "expected 1 (uniform) to 3",
         );
+        check_growth(grading, thickness_elements, &key, problems);
         let [at_low_z, at_high_z] = match (bearing, &self.shoulder_diameters) {
             (None, _) => [0.0; 2],
             (_, Some(typed)) => typed.each_ref().map(|diameter| diameter.si()),
@@ -213,6 +218,19 @@ impl RawSection {
             );
         }
     }
+}
+
+/// Elements through the thickness must not grow so much that nodes beside the groove are at one place.
+fn check_growth(grading: f64, thickness_elements: usize, key: &str, problems: &mut Problems) {
+    let growths = thickness_elements.saturating_sub(1).max(1) as f64;
+    let most = (1e3 * LARGEST_SHARE.powf(1.0 / growths)).floor() / 1e3;
+    let rule = format!(
+        "with {thickness_elements} thickness_elements the last would be {:.1e} times the first; expected at most \
+         {LARGEST_SHARE:.0e} times: a grading of at most {most}, or fewer thickness_elements",
+        grading.powf(growths)
+    );
+    let is_too_much = grading > most && grading <= MOST_GRADING;
+    problems.require(!is_too_much, key, grading, rule);
 }
 
 /// Diameter of the shoulders, m, by the rule above.

@@ -3,7 +3,7 @@
 use super::{Case, EXAMPLE, Scene, assert_messages, message_of, with_line};
 
 /// Values that make no sense.
-const INVALID: [Case; 61] = [
+const INVALID: [Case; 62] = [
     (
         "cut",
         "cut = [{ azimuth = [\"96 deg\", \"84 deg\"] }]",
@@ -242,6 +242,15 @@ const INVALID: [Case; 61] = [
         "grading",
         "grading = 0.2",
         &["inner.section.grading is 0.2; expected 1 (uniform) to 3"],
+    ),
+    // Wrong: Gmsh would be blamed for nodes at one place.
+    (
+        "thickness_elements",
+        "thickness_elements = 60",
+        &[
+            "inner.section.grading is 1.2; with 60 thickness_elements the last would be 4.7e4 times the first; \
+             expected at most 1e4 times: a grading of at most 1.168, or fewer thickness_elements",
+        ],
     ),
     (
         "shoulder_diameters",
