@@ -163,7 +163,7 @@ fn a_ring_in_its_seat_turns_with_its_polar_moment() {
     ];
     let run = dir.raceway(&arguments);
     assert_eq!(run.code, Some(0), "{}", run.stderr);
-    let ring = mesh::read_msh(&dir.path("meshes/6010_outer.msh"), 1e-3).unwrap();
+    let ring = mesh::read_msh(dir.path("meshes/6010_outer.msh"), 1e-3).unwrap();
     let mass = fem::assemble_mass(&ring, &fem::Material::new(207e9, 0.3, 7800.0).unwrap()).unwrap();
     let turn: Vec<f64> = ring.nodes.iter().flat_map(|[x, y, _]| [-y, *x, 0.0]).collect();
     let of_ring: f64 = mass.iter().map(|(m, (i, j))| turn[i] * m * turn[j]).sum();

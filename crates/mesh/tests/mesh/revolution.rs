@@ -329,10 +329,10 @@ fn a_tilted_or_shifted_ring_is_told_its_own_axis() {
 #[test]
 fn a_ring_along_x_or_y_is_told_so() {
     let upright = revolved(RingSide::Inner, 45, ElementKind::Hex8);
-    let about_x = |x: [f64; 3]| [x[2] + 2e-3, x[0], x[1]];
-    let about_y = |x: [f64; 3]| [x[1], x[2] + 2e-3, x[0]];
-    let cases: [(&dyn Fn([f64; 3]) -> [f64; 3], usize, f64); 2] = [(&about_x, 0, 0.0), (&about_y, 1, 90.0)];
-    for (turned, along, azimuth) in cases {
+    type Turn = fn([f64; 3]) -> [f64; 3];
+    let about_x: Turn = |x| [x[2] + 2e-3, x[0], x[1]];
+    let about_y: Turn = |x| [x[1], x[2] + 2e-3, x[0]];
+    for (turned, along, azimuth) in [(about_x, 0, 0.0), (about_y, 1, 90.0f64)] {
         let mut mesh = upright.clone();
         mesh.nodes.iter_mut().for_each(|x| *x = turned(*x));
         let reason = find(&mesh).unwrap_err();
@@ -341,7 +341,7 @@ fn a_ring_along_x_or_y_is_told_so() {
         };
         assert!((axis.tilt.to_degrees() - 90.0).abs() < 1e-6, "{reason}");
         // Either end may be the upper one.
-        let off = axis.azimuth - f64::to_radians(azimuth);
+        let off = axis.azimuth - azimuth.to_radians();
         assert!(off.sin().abs() < 1e-6, "{reason}");
         assert!(axis.point[(along + 1) % 3].abs() < 1e-9, "{reason}");
     }
