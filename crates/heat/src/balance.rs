@@ -293,7 +293,7 @@ mod tests {
 
     /// Wrong: friction that grows almost as fast as it warms would end far from its steady state, by 0.5 K of 50 K: a
     /// gain of 0.95 would end 9.5 K before it. And beyond a dip of friction, where a bearing would run away, it would
-    /// not be found: 200 W exp(-T/10) + 20 W + T^2/100 W/K^2 has it at 16.26 K.
+    /// not be found: 200 W exp(-T/5 K) + 10 W + T^2/50 W/K^2 meets 2 W/K at 13.5 K.
     #[test]
     fn a_gain_near_one_and_a_dip_end_at_the_steady_state() {
         let found = settled(|rise| 5.0 * (1.0 + 0.38 * rise)).unwrap();
