@@ -205,6 +205,17 @@ fn stopped(course: &mut impl OverInstants, reason: &str) -> Failure {
     ))
 }
 
+/// That more instants warn than the first, whose warnings stand for all.
+pub fn more_warn(warned: u64) -> Option<String> {
+    (warned > 1).then(|| format!("{warned} instants have warnings; those of the first are given"))
+}
+
+/// How fast `steps` of `step` s went in so many seconds.
+pub fn pace(steps: u64, step: f64, seconds: f64) -> String {
+    let each = 1e3 * seconds / steps.max(1) as f64;
+    format!("{steps} steps of {step} s, {each:.1} ms per step")
+}
+
 /// Says what there is of a sweep that stops, with so many points solved from its point `first` to `last`, and how to
 /// have the others. Points are written as they are solved.
 pub fn stopped_sweep(reason: &str, (first, solved, last): (u64, u64, u64), dir: &Path) -> Failure {

@@ -248,10 +248,8 @@ impl March<'_> {
         ended?;
         console::print_snapshot(&Snapshot::of_motion(motion, state));
         print::line(format_args!(
-            "{} steps of {} s, {:.1} ms per step; energy defect {:.1e} of the largest energy",
-            state.step - first,
-            self.dynamic.step,
-            1e3 * seconds / (state.step - first).max(1) as f64,
+            "{}; energy defect {:.1e} of the largest energy",
+            instants::pace(state.step - first, self.dynamic.step, seconds),
             state.ledger.relative_defect()
         ));
         summary.print_costs();

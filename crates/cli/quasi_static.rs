@@ -354,11 +354,7 @@ impl QuasiStaticRun<'_, '_, '_> {
         ended?;
         console::print_snapshot(&snapshot);
         let steps = self.step - first;
-        print::line(format_args!(
-            "{steps} steps of {} s, {:.1} ms per step",
-            settings.step,
-            1e3 * seconds / steps.max(1) as f64
-        ));
+        print::line(format_args!("{}", instants::pace(steps, settings.step, seconds)));
         summary.print_costs();
         Ok(())
     }
@@ -371,11 +367,7 @@ impl QuasiStaticRun<'_, '_, '_> {
         } = self.counts;
         let counted = [("steps", self.step), ("rounds", rounds), ("newton", newton)];
         let mut warnings = [remarks.warnings, self.warnings.clone()].concat();
-        if warned > 1 {
-            warnings.push(format!(
-                "{warned} instants have warnings; those of the first are given"
-            ));
-        }
+        warnings.extend(instants::more_warn(warned));
         Findings {
             status: ended
                 .as_ref()

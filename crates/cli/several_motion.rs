@@ -257,10 +257,8 @@ impl ListMarch<'_> {
         ended?;
         print_solution(self.assembly, &last);
         print::line(format_args!(
-            "{} steps of {} s, {:.1} ms per step; {}",
-            self.state.step - first,
-            self.dynamic.step,
-            1e3 * seconds / (self.state.step - first).max(1) as f64,
+            "{}; {}",
+            instants::pace(self.state.step - first, self.dynamic.step, seconds),
             match self.ledgers.worst {
                 0.0 => "energy defects are round-off".to_string(),
                 defect => format!("largest energy defect {defect:.1e} of the largest energy"),

@@ -20,6 +20,7 @@ use results::summary::{Findings, READ, TOTAL};
 use scene::{QuasiStatic, Scene, SeveralScene};
 use timer::Laps;
 
+use crate::instants;
 use crate::several_files::close_bearing;
 use crate::several_quasi_state::ListCounts;
 
@@ -29,8 +30,6 @@ pub struct FoundList {
     pub placed: Vec<Scene>,
     /// Tables of the list.
     pub tables: SeveralTables,
-    /// By bearing.
-    pub files: Vec<Files>,
     /// Number of the last equilibrium.
     pub step: u64,
     /// The list with the loads of the last equilibrium.
@@ -51,95 +50,17 @@ impl FoundList {
         let model = &self.assembly.bearings[bearing].model;
         Shown::at_rest(model, &model.geometry, &self.last.bearings[bearing])
     }
-}
 
-/// A run that has come to its end, or ended early.
-pub struct EndedList {
-    /// Of the scene.
-    pub settings: QuasiStatic,
-    /// What it has found.
-    pub found: FoundList,
-    /// How it ended.
-    pub ended: Result<(), Failure>,
-    /// Number of equilibria of this process but the first.
-    pub steps: u64,
-    /// The time they took, s.
-    pub seconds: f64,
-}
-
-impl EndedList {
-    /// Closes the files and sums up, also when the run has ended early. The list was read until `read`, s, after
-    /// `start`.
-    pub fn conclude(
-        self,
-        (scene, mut solver, rolling): (&SeveralScene, AssemblySolver, &[Option<Rolling>]),
-        dir: &Path,
-        mut warnings: Vec<String>,
-        (read, start): (f64, Instant),
-    ) -> Result<(), Failure> {
-        let EndedList {
-            settings,
-            mut found,
-            ended,
-            steps,
-            seconds,
-        } = self;
-        solver.add_laps(&found.laps);
-        let failed = ended.as_ref().err();
-        let status = failed.map_or("finished".to_string(), Failure::status);
-        warnings.append(&mut found.first_warnings);
-        if found.counts.warned > 1 {
-            warnings.push(format!(
-                "{} instants have warnings; those of the first are given",
-                found.counts.warned
-            ));
-        }
-        // A run that failed says why, not what its failure did to the files; one that stopped must have its step.
-        let of_seats = match (
-            found.close_bearings((&solver, rolling), dir, &status, start),
-            &ended,
-        ) {
-            (Err(_), Err(Failure::User(_) | Failure::Numerical(_))) => return ended,
-            (of_seats, _) => of_seats?,
-        };
-        warnings.extend(of_seats);
-        let mut laps = Laps::default();
-        laps.add(READ, read);
-        laps.merge(&solver.laps());
-        laps.add(TOTAL, start.elapsed().as_secs_f64());
-        let last = ListState::of_equilibrium(&found.assembly, &found.last);
-        let findings = SeveralFindings {
-            status,
-            iterations: found.counts.iterations as usize,
-            residual: found.last.shaft.error,
-            warnings,
-            laps,
-        };
-        let summary = SeveralSummary::new(scene, &found.assembly, &last, findings);
-        agree(summary.write(dir).map_err(Failure::from))?;
-        ended?;
-        print_solution(&found.assembly, &last);
-        print::line(format_args!(
-            "{steps} steps of {} s, {:.1} ms per step",
-            settings.step,
-            1e3 * seconds / steps.max(1) as f64
-        ));
-        summary.print_costs();
-        Ok(())
-    }
-}
-
-impl FoundList {
     /// Closes the files of the bearings and writes their summaries; warns of their seats. Collective.
-    fn close_bearings(
-        &mut self,
+    fn close(
+        &self,
+        files: Vec<Files>,
         (solver, rolling): (&AssemblySolver, &[Option<Rolling>]),
-        dir: &Path,
-        status: &str,
+        (dir, status): (&Path, &str),
         start: Instant,
     ) -> Result<Vec<String>, Failure> {
         let mut warnings = Vec::new();
-        for (i, files) in std::mem::take(&mut self.files).into_iter().enumerate() {
+        for (i, files) in files.into_iter().enumerate() {
             let (mounted, factors) = (&self.assembly.bearings[i], solver.of_bearing(i));
             let forecast = Side::BOTH.map(|side| factors.ring(side).map(|r| r.solver.memory));
             let forecast = Forecasts::at_rest(forecast, (&self.placed[i], &mounted.model));
@@ -164,5 +85,75 @@ impl FoundList {
             )?);
         }
         Ok(warnings)
+    }
+}
+
+/// A run that has come to its end, or ended early.
+pub struct EndedList {
+    /// Of the scene.
+    pub settings: QuasiStatic,
+    /// What it has found.
+    pub found: FoundList,
+    /// Its files, by bearing.
+    pub files: Vec<Files>,
+    /// How it ended.
+    pub ended: Result<(), Failure>,
+    /// Number of equilibria of this process but the first.
+    pub steps: u64,
+    /// The time they took, s.
+    pub seconds: f64,
+}
+
+impl EndedList {
+    /// Closes the files and sums up, also when the run has ended early. The list was read until `read`, s, after
+    /// `start`.
+    pub fn conclude(
+        self,
+        (scene, mut solver, rolling): (&SeveralScene, AssemblySolver, &[Option<Rolling>]),
+        dir: &Path,
+        mut warnings: Vec<String>,
+        (read, start): (f64, Instant),
+    ) -> Result<(), Failure> {
+        let EndedList {
+            settings,
+            mut found,
+            files,
+            ended,
+            steps,
+            seconds,
+        } = self;
+        solver.add_laps(&found.laps);
+        let failed = ended.as_ref().err();
+        let status = failed.map_or("finished".to_string(), Failure::status);
+        warnings.append(&mut found.first_warnings);
+        warnings.extend(instants::more_warn(found.counts.warned));
+        // A run that failed says why, not what its failure did to the files; one that stopped must have its step.
+        let of_seats = match (
+            found.close(files, (&solver, rolling), (dir, &status), start),
+            &ended,
+        ) {
+            (Err(_), Err(Failure::User(_) | Failure::Numerical(_))) => return ended,
+            (of_seats, _) => of_seats?,
+        };
+        warnings.extend(of_seats);
+        let mut laps = Laps::default();
+        laps.add(READ, read);
+        laps.merge(&solver.laps());
+        laps.add(TOTAL, start.elapsed().as_secs_f64());
+        let last = ListState::of_equilibrium(&found.assembly, &found.last);
+        let findings = SeveralFindings {
+            status,
+            iterations: found.counts.iterations as usize,
+            residual: found.last.shaft.error,
+            warnings,
+            laps,
+        };
+        let summary = SeveralSummary::new(scene, &found.assembly, &last, findings);
+        agree(summary.write(dir).map_err(Failure::from))?;
+        ended?;
+        print_solution(&found.assembly, &last);
+        print::line(format_args!("{}", instants::pace(steps, settings.step, seconds)));
+        summary.print_costs();
+        Ok(())
     }
 }

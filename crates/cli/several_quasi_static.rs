@@ -15,7 +15,6 @@ use results::failure::{Failure, agree};
 use results::files::Files;
 use results::motion_fields::{Recorded, RestartState};
 use results::several::{ListState, SeveralTables};
-use results::shown::Shown;
 use results::snapshot::Snapshot;
 use results::stop::Stop;
 use scene::{QuasiStatic, Rings, Scene, SeveralScene, assembly_with_rings};
@@ -73,8 +72,8 @@ pub fn run(
             settings: *settings,
             list: &list,
             ahead,
+            files: create_files(begun, &assembly, &placed, snapshots, surveys)?,
             found: FoundList {
-                files: create_files(begun, &assembly, &placed, snapshots, surveys)?,
                 placed,
                 tables,
                 step: 0,
@@ -136,10 +135,10 @@ pub fn resume(
             settings,
             list: &list,
             ahead: PointsAhead::new(scope, &solve, group, Some(restored.taken)),
+            files,
             found: FoundList {
                 placed,
                 tables,
-                files,
                 step,
                 assembly,
                 last: solution,
@@ -251,6 +250,8 @@ struct ListEquilibria<'a, 's, 'scope> {
     list: &'a TurningList<'a>,
     ahead: PointsAhead<'s, 'scope, AssemblyPoint, Assembly>,
     found: FoundList,
+    /// By bearing.
+    files: Vec<Files>,
     written: WrittenSteps,
     dir: &'a Path,
 }
@@ -288,6 +289,7 @@ impl ListEquilibria<'_, '_, '_> {
             settings: self.settings,
             steps: self.found.step - first,
             found: self.found,
+            files: self.files,
             ended,
             seconds: clock.lap(),
         })
@@ -334,20 +336,11 @@ impl OverInstants for ListEquilibria<'_, '_, '_> {
 
     /// Rank 0 goes on with the other bearings where it fails.
     fn reduce(&mut self) -> Result<(), Failure> {
-        let FoundList {
-            step,
-            assembly,
-            last,
-            files,
-            placed,
-            ..
-        } = &mut self.found;
-        let time = self.list.time(*step);
+        let found = &self.found;
+        let (step, time) = (found.step, self.list.time(found.step));
         let mut reduced = Ok(());
-        for (i, files) in files.iter_mut().enumerate() {
-            let model = &assembly.bearings[i].model;
-            let shown = Shown::at_rest(model, &model.geometry, &last.bearings[i]);
-            reduced = reduced.and(files.reduce(*step, time, &shown, &placed[i]));
+        for (i, files) in self.files.iter_mut().enumerate() {
+            reduced = reduced.and(files.reduce(step, time, &found.shown(i), &found.placed[i]));
         }
         reduced
     }
@@ -357,42 +350,29 @@ impl OverInstants for ListEquilibria<'_, '_, '_> {
         let (step, time) = (found.step, self.list.time(found.step));
         let now = ListState::of_equilibrium(&found.assembly, &found.last);
         found.tables.append((step, time), None, &found.assembly, &now)?;
-        for (i, files) in found.files.iter_mut().enumerate() {
+        for (i, files) in self.files.iter_mut().enumerate() {
             files.write_tables(step, time, None, &self.list.snapshot(&found.last, i))?;
         }
         Ok(())
     }
 
     fn append_files(&mut self, restart: RestartState) -> Result<(), Failure> {
-        let at = (self.found.step, self.list.time(self.found.step));
-        let every = self.found.placed[0].output.every;
+        let found = &self.found;
+        let at = (found.step, self.list.time(found.step));
+        let every = found.placed[0].output.every;
         let kept = every.kept(at.0, self.settings.output_every, self.settings.n_steps);
-        let mut files = std::mem::take(&mut self.found.files);
-        let written = self.write_files(&mut files, (at, kept), restart);
-        self.found.files = files;
-        written
-    }
-}
-
-impl ListEquilibria<'_, '_, '_> {
-    fn write_files(
-        &self,
-        files: &mut [Files],
-        (at, kept): ((u64, f64), scene::KeptFields),
-        restart: RestartState,
-    ) -> Result<(), Failure> {
-        let (found, mut gathered) = (&self.found, Vec::new());
-        for (i, files) in files.iter_mut().enumerate() {
+        let mut gathered = Vec::new();
+        for (i, files) in self.files.iter_mut().enumerate() {
             gathered.push(files.gather_stress(&found.shown(i), kept));
         }
         let taken = self.ahead.taken().expect("the last equilibrium has been taken");
-        for (i, (files, gathered)) in files.iter_mut().zip(gathered).enumerate() {
+        for (i, (files, gathered)) in self.files.iter_mut().zip(gathered).enumerate() {
             if !files.are_written_here() {
                 continue;
             }
             let state = several_quasi_state::arrays(taken, &found.counts, i);
-            let shown = found.shown(i);
-            let shown = Recorded::of_equilibrium(&shown, at, gathered, (&found.placed[i], kept), state)?;
+            let (shown, placed) = (found.shown(i), (&found.placed[i], kept));
+            let shown = Recorded::of_equilibrium(&shown, at, gathered, placed, state)?;
             files.write_fields_later(restart, move |stress| shown.record(stress))?;
         }
         Ok(())

@@ -1,7 +1,7 @@
 //! Lines for the user. Unlike `println!`, these do not panic when nobody reads any more (`raceway run ... | head`):
 //! the run goes on, as its results are files. What else keeps standard output from being written, such as a full disk,
-//! is remembered for the end. A command may keep standard output for one answer, say less, or keep a
-//! log of all that is said; lines that begin with `warning: `, `error: ` or `stopped: ` are always said.
+//! is remembered for the end. A command may keep standard output for one answer, say less, or keep a log of all that is
+//! said; lines that begin with `warning: `, `error: ` or `stopped: ` are always said.
 
 use std::fmt::Arguments;
 use std::fs::File;

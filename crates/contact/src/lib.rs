@@ -46,7 +46,7 @@ pub use meridian::Meridian;
 pub use near_field::{LoadedPatch, NearField, RingPoint};
 pub use patch::Patch;
 pub use patch_shape::{LeastSize, PatchShape, is_truncated};
-pub use raceway::{Groove, RacewaySurface};
+pub use raceway::{Groove, RacewaySurface, spacings_in_side};
 pub use semi_axes::SemiAxes;
 pub use sphere::SphereCompliance;
 pub use strips::{StripForce, StripLaw, StripLine};

@@ -286,6 +286,15 @@ fn coordinates_first(coordinates: &[[f64; 2]], first: usize) -> f64 {
     coordinates[first][0]
 }
 
+/// Node spacings in the side of a facet. Irregular triangles carry a pressure less well than their three nodes per edge
+/// suggest: their whole size counts.
+pub fn spacings_in_side(kind: FacetKind) -> f64 {
+    match kind {
+        FacetKind::Quad4 | FacetKind::Tri6 => 1.0,
+        FacetKind::Quad8 => 2.0,
+    }
+}
+
 /// Spacing of the nodes of every facet, averaged over the facets that share a node.
 fn node_spacing(
     nodes: &[usize],
@@ -295,11 +304,7 @@ fn node_spacing(
     n_nodes: usize,
 ) -> Vec<[f64; 2]> {
     let n = kind.n_nodes();
-    // Irregular triangles carry a pressure less well than their three nodes per edge suggest: their whole size counts.
-    let order = match kind {
-        FacetKind::Quad4 | FacetKind::Tri6 => 1.0,
-        FacetKind::Quad8 => 2.0,
-    };
+    let order = spacings_in_side(kind);
     let mut sums = vec![[0.0; 3]; n_nodes];
     for (facet_nodes, c) in nodes.chunks(n).zip(coordinates.chunks(n)) {
         let range = |i: usize| {

@@ -17,7 +17,7 @@ use scene::{Analysis, Modes, Scene};
 use crate::failure::Failure;
 use crate::memory::{
     Bound, MOST_PER_NODE, bound, bytes_of_points, queued_steps, reduction_memory, require, rings_at_once,
-    rings_of, with_bodies,
+    rings_of, with_bodies, with_reduction,
 };
 use crate::seat::tied;
 
@@ -109,12 +109,8 @@ pub fn forecast_list(analysis: &Analysis, bearings: &[BearingMemory<'_>]) -> (us
         .iter()
         .map(|bearing| reduction_memory(bearing.scene, bearing.model))
         .sum();
-    let steps = steps_of(analysis, bearings).map(|steps| with_all(steps) + reductions);
-    match analysis {
-        // A motion is reduced in its steps.
-        Analysis::Dynamic(_) => (with_all(rest), steps),
-        _ => (with_all(rest) + reductions, steps),
-    }
+    let steps = steps_of(analysis, bearings).map(with_all);
+    with_reduction((with_all(rest), steps), analysis, reductions)
 }
 
 /// What load cases and instants hold beside the rings, of which several are solved at the same time, bytes.

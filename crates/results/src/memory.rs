@@ -122,12 +122,12 @@ pub fn forecast(
     rings: [Option<RingMemory>; 2],
     motion: [Option<Option<MotionMemory>>; 2],
 ) -> (usize, Option<usize>) {
-    let (analysis, reduction) = (&scene.analysis, reduction_memory(scene, model));
+    let analysis = &scene.analysis;
     let steps = match (analysis, motion) {
         (Analysis::Dynamic(dynamic), [Some(inner), Some(outer)]) => {
             let queued = queued_steps(dynamic);
             let steps = forecast_motion_peak([inner, outer], queued, rings_at_once());
-            Some(beside_rings(steps, model) + reduction)
+            Some(beside_rings(steps, model))
         }
         _ => None,
     };
@@ -137,10 +137,18 @@ pub fn forecast(
         Analysis::Static | Analysis::Dynamic(_) | Analysis::Modes(_) => 1,
     };
     let rest = forecast_peak(rings, rings_at_once()) + points_bytes(rings, model, points);
-    let rest = beside_rings(rest, model);
+    let peaks = (beside_rings(rest, model), steps);
+    with_reduction(peaks, analysis, reduction_memory(scene, model))
+}
+
+/// Peaks at rest and in the steps of a motion, with what `[output.reduction]` takes. A motion is reduced in its steps.
+pub(crate) fn with_reduction(
+    (rest, steps): (usize, Option<usize>),
+    analysis: &Analysis,
+    reduction: usize,
+) -> (usize, Option<usize>) {
     match analysis {
-        // A motion is reduced in its steps.
-        Analysis::Dynamic(_) => (rest, steps),
+        Analysis::Dynamic(_) => (rest, steps.map(|steps| steps + reduction)),
         _ => (rest + reduction, steps),
     }
 }

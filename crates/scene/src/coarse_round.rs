@@ -5,21 +5,17 @@
 
 use std::f64::consts::{PI, TAU};
 
-use contact::Side;
-use dynamics::{ContactMode, Model, RingModel};
-use mesh::{FacetKind, Mesh};
+use contact::{Side, spacings_in_side};
+use dynamics::{ContactMode, Model, RACEWAY_GROUP, RingModel};
+use mesh::Mesh;
 
 /// A sentence where the patches of a ring reach the next ball; its mesh is in a file.
 pub fn reaches_next_ball(model: &Model, side: Side, ring: &RingModel, path: &str) -> Option<String> {
     if model.contact.mode != ContactMode::Patch {
         return None;
     }
-    let order = match ring.mesh.kind.facet_kind() {
-        FacetKind::Quad8 => 2.0,
-        FacetKind::Quad4 | FacetKind::Tri6 => 1.0,
-    };
     let n_balls = model.geometry.n_balls as f64;
-    let needed = model.contact.least_patch.spacings * n_balls / order;
+    let needed = model.contact.least_patch.spacings * n_balls / spacings_in_side(ring.mesh.kind.facet_kind());
     let found = elements_round(&ring.mesh)?;
     (found < needed * (1.0 - 1e-9)).then(|| {
         format!(
@@ -35,7 +31,7 @@ pub fn reaches_next_ball(model: &Model, side: Side, ring: &RingModel, path: &str
 
 /// Elements round the raceway, by the mean angle of a facet.
 fn elements_round(mesh: &Mesh) -> Option<f64> {
-    let facets = mesh.group("raceway");
+    let facets = mesh.group(RACEWAY_GROUP);
     let span = |facet: &mesh::Facet| {
         let azimuths = mesh.facet_nodes(*facet).map(|node| {
             let [x, y, _] = mesh.nodes[node];

@@ -20,7 +20,7 @@ pub struct StudyReport {
     pub title: String,
     /// The scene of all points, as the study has it.
     pub scene: String,
-    /// The same from the folder of this file; absent in those of earlier versions.
+    /// The same from the folder of this file.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub scene_file: Option<String>,
     /// Day of the table, UTC.
