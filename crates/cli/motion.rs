@@ -31,7 +31,7 @@ use crate::ledger_check::check_ledger;
 use crate::options::Limits;
 use crate::progress::Progress;
 use crate::remarks::Remarks;
-use crate::start::{memory_at_rest, settle};
+use crate::start::settle;
 use crate::stored::{RestartedFrom, Stored};
 
 /// What is saved when a step fails.
@@ -107,7 +107,6 @@ pub fn resume(
     }))?;
     let remarks = Remarks::on(scene, &model, std::mem::take(&mut survey.doubts))?;
     let read = start.elapsed().as_secs_f64();
-    let at_rest = memory_at_rest(&model, dynamic)?;
     progress.stage("factoring the effective matrices");
     let mut laps = Laps::default();
     let motion = factored(&model, scene, dynamic, &mut laps)?;
@@ -145,7 +144,7 @@ pub fn resume(
     };
     let costs = StartCosts {
         read,
-        forecast: Forecasts::of_motion(at_rest, &motion, (scene, dynamic)),
+        forecast: Forecasts::of_motion([None, None], &motion, (scene, dynamic)),
         start,
     };
     march.finish_run(progress, limits, remarks.with(warnings), costs)

@@ -5,7 +5,6 @@ use contact::Side;
 use dynamics::motion::{EquilibriumRates, Motion, MotionState};
 use dynamics::{Model, RingMemory, StaticSolution, StaticSolver};
 use results::failure::Failure;
-use results::memory::rings_of;
 use scene::{Dynamic, Scene, Start, rolling};
 use timer::Laps;
 
@@ -47,14 +46,6 @@ pub fn settle(
         forecast: Side::BOTH.map(|side| statics.ring(side).map(|r| r.solver.memory)),
         timing: statics.timing,
     })
-}
-
-/// What the rings were to take at rest before a motion that is resumed, so that its summary is that of one run.
-pub fn memory_at_rest(model: &Model, dynamic: &Dynamic) -> Result<[Option<RingMemory>; 2], Failure> {
-    match dynamic.start {
-        Start::Given { .. } => Ok([None, None]),
-        Start::Static | Start::Rolling => Ok(rings_of(model)?.0),
-    }
 }
 
 impl Settled {

@@ -53,9 +53,14 @@ struct Draft {
 
 impl Draft {
     fn new(dir: &Path, name: &str) -> Draft {
+        Draft::of_many(dir, name, name)
+    }
+
+    /// One of several drafts of a file that are there at the same time, under a name of its own.
+    fn of_many(dir: &Path, name: &str, own: &str) -> Draft {
         Draft {
             dir: dir.to_path_buf(),
-            tmp: temporary(dir, name),
+            tmp: temporary(dir, own),
             path: dir.join(name),
         }
     }
@@ -89,7 +94,24 @@ impl Unsealed {
         format: Format,
         fill: impl FnOnce(&hdf5::File) -> hdf5::Result<Vec<String>>,
     ) -> Result<Unsealed, CheckpointError> {
-        let draft = Draft::new(dir, name);
+        Unsealed::fill(Draft::new(dir, name), format, fill)
+    }
+
+    /// The same for one of several drafts of the file that are there at the same time, of a step.
+    pub fn write_of_step(
+        dir: &Path,
+        (name, step): (&str, u64),
+        format: Format,
+        fill: impl FnOnce(&hdf5::File) -> hdf5::Result<Vec<String>>,
+    ) -> Result<Unsealed, CheckpointError> {
+        Unsealed::fill(Draft::of_many(dir, name, &format!("{name}.{step}")), format, fill)
+    }
+
+    fn fill(
+        draft: Draft,
+        format: Format,
+        fill: impl FnOnce(&hdf5::File) -> hdf5::Result<Vec<String>>,
+    ) -> Result<Unsealed, CheckpointError> {
         let extents = create_hdf(&draft.tmp, format, fill);
         let extents = extents.map_err(CheckpointError::hdf("write", &draft.path))?;
         Ok(Unsealed { draft, extents })

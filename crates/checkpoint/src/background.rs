@@ -14,6 +14,7 @@ use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
+use crate::atomic::Unsealed;
 use crate::error::CheckpointError;
 use crate::output::Output;
 use crate::point_table::PointTable;
@@ -188,8 +189,8 @@ fn make_each(waiting: Receiver<Maker>, made: SyncSender<Made>) -> Duration {
     time
 }
 
-/// What is to be committed: a step, and a table that is written after it.
-type ToCommit = (WrittenStep, Option<(&'static str, PointTable)>);
+/// What is to be committed: a step, and after it a table of the run up to it.
+type ToCommit = (WrittenStep, Option<Unsealed>);
 
 /// Writes the files of steps that follow `last`; returns the time that took.
 fn write_each(
@@ -204,6 +205,8 @@ fn write_each(
         let step = writer.write(&record, last)?;
         last = Some((step.step, step.time));
         drop(record);
+        let table = table.map(|(name, table)| writer.write_table((name, step.step), &table));
+        let table = table.transpose()?;
         time += clock.elapsed();
         if written.send((step, table)).is_err() {
             break;
@@ -226,9 +229,7 @@ fn commit_each(
             synced.map_err(CheckpointError::io("write", &companion.path))?;
         }
         output.commit(step)?;
-        if let Some((name, table)) = table {
-            output.write_table(name, &table)?;
-        }
+        table.map_or(Ok(()), Unsealed::publish)?;
         time += clock.elapsed();
     }
     Ok(time)

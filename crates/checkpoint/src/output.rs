@@ -18,7 +18,7 @@ use crate::index::{Views, rebuild_index};
 use crate::lock::FolderLock;
 use crate::mesh_file::{MESH_FILE, MeshFile, read_mesh, require_same_mesh};
 use crate::names::{INDEX_FILE, step_file_name};
-use crate::point_table::{PointTable, write_table};
+use crate::point_table::PointTable;
 use crate::record::{StepRecord, require_texts};
 use crate::series::write_series;
 use crate::step::read_about;
@@ -184,8 +184,8 @@ impl Output {
     /// Writes fields of the run as a whole as a file `name`, in place of an earlier one. Its precision is that of
     /// stress.
     pub fn write_table(&self, name: &str, table: &PointTable) -> Result<(), CheckpointError> {
-        let written = (&self.writer.origin(), self.writer.storage.stress);
-        write_table(self.dir(), name, table, self.writer.n_points, written)
+        let step = self.last_step().map_or(0, |(step, _)| step);
+        self.writer.write_table((name, step), table)?.publish()
     }
 
     /// Builds the temporal index over all committed steps and returns what it shows; `None` for a run without steps,

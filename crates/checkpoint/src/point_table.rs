@@ -7,7 +7,7 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use crate::atomic::{self, Format};
+use crate::atomic::{Format, Unsealed};
 use crate::dataset::{CheckedFile, create_group, create_vtkhdf, link_mesh, write_text, write_values};
 use crate::error::CheckpointError;
 use crate::mesh_file::{MESH_FILE, MESH_HASH, RUN};
@@ -36,14 +36,14 @@ pub struct TableField {
     pub values: Vec<f64>,
 }
 
-/// Writes a file `name` into `dir`.
+/// Writes a file into `dir`, as one that gets its name later: its name, and the step up to which it knows the run.
 pub(crate) fn write_table(
     dir: &Path,
-    name: &str,
+    named: (&str, u64),
     table: &PointTable,
     n_points: usize,
     (origin, precision): (&StepOrigin<'_>, Precision),
-) -> Result<(), CheckpointError> {
+) -> Result<Unsealed, CheckpointError> {
     require_texts(&table.about)?;
     for field in &table.fields {
         let found = field.values.len() / field.n_components.max(1);
@@ -55,7 +55,7 @@ pub(crate) fn write_table(
             });
         }
     }
-    atomic::write_hdf(dir, name, Format::Earliest, |file| {
+    Unsealed::write_of_step(dir, named, Format::Earliest, |file| {
         create_vtkhdf(file, [1, 0])?;
         link_mesh(file, MESH_FILE)?;
         create_group(file, "restart")?;

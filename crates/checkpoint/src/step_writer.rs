@@ -9,6 +9,7 @@ use crate::atomic::Unsealed;
 use crate::error::CheckpointError;
 use crate::mesh_file::MeshFile;
 use crate::names::step_file_name;
+use crate::point_table::{PointTable, write_table};
 use crate::record::StepRecord;
 use crate::step::{StepOrigin, write_step_file};
 use crate::storage::Storage;
@@ -69,6 +70,13 @@ impl StepWriter {
         let name = step_file_name(step);
         let file = write_step_file(&self.dir, &name, record, &self.origin(), self.storage)?;
         Ok(WrittenStep { file, step, time })
+    }
+
+    /// Writes fields of the run as a whole, as a file that gets its name later: its name, and the step up to which it
+    /// knows the run. Its precision is that of stress.
+    pub fn write_table(&self, named: (&str, u64), table: &PointTable) -> Result<Unsealed, CheckpointError> {
+        let written = (&self.origin(), self.storage.stress);
+        write_table(&self.dir, named, table, self.n_points, written)
     }
 
     /// What the files of the run say about it.

@@ -288,26 +288,23 @@ impl Files {
         let ring_stress = self.ring_stress.clone();
         let tables = Some(open.tables.stamps());
         let region = open.region.clone();
-        let reduction = open
-            .reduction
-            .as_ref()
-            .filter(|_| restart == RestartState::Stored);
-        let (arrays, table) = (
-            reduction.map(StressReduction::arrays),
-            reduction.and_then(StressReduction::table),
-        );
+        let reduction = open.reduction.as_ref();
+        let reduction = reduction.filter(|_| restart == RestartState::Stored).cloned();
         let make = move || {
             let mut record = StepRecord {
                 tables,
                 ..record(&ring_stress)
             };
+            let arrays = reduction.as_ref().map(StressReduction::arrays);
             record.state.extend(arrays.into_iter().flatten());
             if let Some(region) = &region {
                 region.apply(&mut record);
             }
             Made {
                 record,
-                table: table.map(|table| (REDUCTION_FILE, table)),
+                table: reduction
+                    .and_then(|known| known.table())
+                    .map(|table| (REDUCTION_FILE, table)),
             }
         };
         let hand_over = || open.output.write_step_made_by(make);

@@ -55,6 +55,7 @@ const ROUND_OFF: f64 = 1e-12;
 const NODES_AT_ONCE: usize = 512;
 
 /// What is known of the steps so far.
+#[derive(Clone)]
 pub struct StressReduction {
     asked: scene::OutputReduction,
     stress: Arc<RingStress>,

@@ -15,6 +15,7 @@ const CYCLES: &str = "reduction_cycles";
 const NODES_AT_ONCE: usize = 256;
 
 /// Nodes whose cycles are counted.
+#[derive(Clone)]
 pub struct NodeHistories {
     asked: CycleDamage,
     /// Their numbers among those of both rings, growing.
