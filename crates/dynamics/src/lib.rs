@@ -42,6 +42,7 @@ pub mod footprint;
 pub mod frame;
 pub mod pose;
 pub mod raceway;
+mod relaxation;
 pub mod shoulders;
 pub mod surface_equilibrium;
 pub mod surfaces;

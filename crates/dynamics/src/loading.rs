@@ -6,8 +6,7 @@
 //! pass shrinks the change by (change of the loads) / (change of the contact forces), below 0.4 for the gyroscopic
 //! moment with the centrifugal force of the balls, even on balls that have left the inner raceway. Where it does not
 //! shrink so fast, as for the moment of a fast bearing alone under a small load, where full steps go back and forth
-//! for ever, only a share of the change is taken, by Aitken's rule (Irons and Tuck, Int. J. Numer. Meth. Eng. 1
-//! (1969) 275).
+//! for ever, passes are mixed ([`crate::relaxation`]).
 
 use contact::{Meridian, Side};
 use ring::RingModel;
@@ -24,6 +23,7 @@ use crate::frame::{turn, turn_nodal};
 use crate::interactions::raceway_contact::Site;
 use crate::model::Model;
 use crate::pose::Pose;
+use crate::relaxation::{Relaxation, following};
 use crate::surface_equilibrium::settle_on_surfaces;
 use crate::surfaces::{Strips, SurfacePlace};
 use crate::system::Interval;
@@ -138,7 +138,7 @@ impl<'a> LoadCase<'a> {
                 2 * (place - n_contacts)
             };
             history.push(change);
-            relaxation.shorten(&self.loads, &mut next);
+            relaxation.mix(&self.loads, &mut next);
             self.loads = next;
             self.parts.set_loads(&self.loads);
             u = self.minimise(&u)?;
@@ -212,68 +212,6 @@ impl BearingParts {
         }
         self.contacts.dead.clone_from(&loads.contacts);
     }
-}
-
-/// Contraction of a pass above which its change is shortened.
-const SLOW_PASS: f64 = 0.5;
-/// Least share of a change that is taken.
-const LEAST_SHARE: f64 = 0.05;
-
-/// Aitken's share of the change of loads that is taken.
-struct Relaxation {
-    share: f64,
-    /// The last whole change of the loads that follow the angles.
-    change: Vec<Meridian>,
-}
-
-impl Default for Relaxation {
-    fn default() -> Relaxation {
-        Relaxation {
-            share: 1.0,
-            change: Vec::new(),
-        }
-    }
-}
-
-impl Relaxation {
-    /// Takes only a share of the way from the loads `old` to `new`.
-    fn shorten(&mut self, old: &Loads, new: &mut Loads) {
-        let (from, to) = (following(old), following(new));
-        let change: Vec<Meridian> = from.iter().zip(&to).map(|(a, b)| *b - *a).collect();
-        let product =
-            |a: &[Meridian], b: &[Meridian]| -> f64 { a.iter().zip(b).map(|(a, b)| a.dot(*b)).sum() };
-        let before = product(&self.change, &self.change);
-        if before > 0.0 && product(&change, &change) > SLOW_PASS * SLOW_PASS * before {
-            let pairs = change.iter().zip(&self.change);
-            let bend: Vec<Meridian> = pairs.map(|(a, b)| *a - *b).collect();
-            let share = -self.share * product(&self.change, &bend) / product(&bend, &bend);
-            // Without any bend the last share stays.
-            if share.is_finite() {
-                self.share = share.clamp(LEAST_SHARE, 1.0);
-            }
-        }
-        self.change = change;
-        if self.share == 1.0 {
-            return;
-        }
-        let between = |old: f64, new: &mut f64| *new = old + self.share * (*new - old);
-        let pairs = |old: &[Meridian], new: &mut [Meridian]| {
-            for (old, new) in old.iter().zip(new) {
-                between(old.radial, &mut new.radial);
-                between(old.axial, &mut new.axial);
-            }
-        };
-        pairs(&old.contacts, &mut new.contacts);
-        pairs(&old.balls, &mut new.balls);
-        let slopes = old.ball_slopes.iter().zip(&mut new.ball_slopes);
-        let shaft = old.shaft.iter().zip(&mut new.shaft);
-        slopes.chain(shaft).for_each(|(old, new)| between(*old, new));
-    }
-}
-
-/// Loads that may follow the contact angles, N: those of the contacts, then of the balls.
-fn following(loads: &Loads) -> Vec<Meridian> {
-    [loads.contacts.as_slice(), &loads.balls].concat()
 }
 
 /// Contact places or loads that do not come to rest; `worst` is the site that changes most.

@@ -182,7 +182,7 @@ fn all_warnings(
 ) -> Vec<String> {
     warnings(case.model, footprints, forces, balls)
         .into_iter()
-        .chain(friction_warning(forces, &case.loads.contacts))
+        .chain(friction_warning(case.model, forces, &case.loads.contacts))
         .chain(
             case.model
                 .effects
@@ -341,7 +341,11 @@ fn warnings(
 }
 
 /// Warns of forces across contacts (the gyroscopic moment's) that friction cannot carry.
-fn friction_warning(forces: &[Meridian], across: &[Meridian]) -> Option<String> {
+/// Free balls have no more than friction carries.
+fn friction_warning(model: &Model, forces: &[Meridian], across: &[Meridian]) -> Option<String> {
+    if model.traction().is_some() {
+        return None;
+    }
     let needed = forces.iter().zip(across).map(|(n, f)| f.norm() / n.norm());
     let (place, most) = needed
         .enumerate()

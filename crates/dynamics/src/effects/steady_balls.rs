@@ -14,6 +14,10 @@ use crate::interactions::traction::{PatchPoints, PressureLine, Traction, largest
 use crate::kinematics::Kinematics;
 use crate::model::Model;
 
+/// How far a ball may fall behind the cage, over the speed of the faster ring: a quarter of the cage's speed in most
+/// bearings. Kinematics makes a few hundredths; drag on a ball that is hardly loaded would stop it.
+const MOST_LAG: f64 = 0.1;
+
 /// Steadily rolling balls of an equilibrium.
 #[derive(Clone, Debug)]
 pub struct SteadyBalls {
@@ -60,16 +64,18 @@ impl SteadyBalls {
         for ball in 0..balls.len() {
             found.push(solve(ball, None)?);
         }
-        let orbits: Vec<f64> = found.iter().flatten().map(|ball| ball.orbit).collect();
-        if orbits.is_empty() {
+        let Some(cage) = cage_speed(&balls, &found) else {
             return Ok(None);
-        }
-        // The cage drives balls that one ring alone loads.
-        let cage = orbits.iter().sum::<f64>() / orbits.len() as f64;
+        };
+        let fastest = speeds[0].abs().max(speeds[1].abs());
+        let slowest = cage - MOST_LAG * fastest.copysign(cage);
         let mut all = Vec::new();
         for (ball, found) in found.into_iter().enumerate() {
             let found = match found {
-                Some(found) => Some(found),
+                Some(found) if (found.orbit - slowest) * cage >= 0.0 => Some(found),
+                // The cage pushes a ball that drag would leave behind.
+                Some(_) => solve(ball, Some(slowest))?,
+                // It drives balls that one ring alone loads.
                 None => solve(ball, Some(cage))?,
             };
             all.push(found.unwrap_or(SteadyRolling {
@@ -163,6 +169,19 @@ impl SteadyBalls {
             kinematic_cage_speed_rad_per_s: self.kinematic_orbit,
         }
     }
+}
+
+/// Speed with which a cage goes round, rad/s: that of the balls which roll, by the forces with which the inner ring
+/// drives them; None where none rolls.
+fn cage_speed(balls: &[SteadyBall<'_>], found: &[Option<SteadyRolling>]) -> Option<f64> {
+    let driven = balls
+        .iter()
+        .zip(found)
+        .filter_map(|(ball, found)| found.as_ref().map(|found| (ball.contacts[0].force, found.orbit)));
+    let (force, sum) = driven.fold((0.0, 0.0), |(force, sum), (of_ball, orbit)| {
+        (force + of_ball, sum + of_ball * orbit)
+    });
+    (force > 0.0).then(|| sum / force)
 }
 
 /// A contact of a ball as it stands.

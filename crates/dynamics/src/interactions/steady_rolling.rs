@@ -109,23 +109,20 @@ const GROWTH: f64 = 1.5;
 const CREEP_PASSES: usize = 4;
 
 impl SteadyBall<'_> {
-    /// How the ball rolls; None where nothing turns, friction is zero, or no contact is loaded. `cage` is the speed
-    /// round the axis of balls that only one contact loads, rad/s. The error is the residual that stays.
+    /// How the ball rolls; None where nothing turns, friction is zero, or no contact is loaded, and where one contact
+    /// alone is without a `cage`, which drives the ball round the axis at a given speed, rad/s. The error is the
+    /// residual that stays.
     pub fn solve(&self, cage: Option<f64>) -> Result<Option<SteadyRolling>, f64> {
         let loaded = self.contacts.iter().filter(|contact| contact.force > 0.0).count();
         let is_still = self.contacts.iter().all(|contact| contact.speed == 0.0);
         if loaded == 0 || is_still || self.traction.law.at(0.0)[0].max(self.largest_coefficient()) == 0.0 {
             return Ok(None);
         }
-        let mut y = self.pure_rolling();
-        let held = match (loaded, cage) {
-            (1, None) => return Ok(None),
-            (1, Some(orbit)) => {
-                y[0] = orbit;
-                true
-            }
-            _ => false,
-        };
+        if loaded == 1 && cage.is_none() {
+            return Ok(None);
+        }
+        let (mut y, held) = (self.pure_rolling(), cage.is_some());
+        y[0] = cage.unwrap_or(y[0]);
         for _ in 0..CREEP_PASSES {
             let filmed = self.with_films(&y);
             let found = filmed.settle(y, filmed.small_slips(&y), held)?;

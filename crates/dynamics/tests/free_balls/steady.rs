@@ -188,6 +188,35 @@ fn drag_is_shared_and_unloaded_balls_go_with_the_others() {
     assert!(relative(a.orbit_rad_per_s, b.orbit_rad_per_s) < 1e-5);
 }
 
+/// Wrong: drag would stop balls that are hardly loaded, round for round, until nothing presses them outwards and no
+/// equilibrium is found. The cage pushes them. A load across of four times the thrust leaves the other side so light.
+#[test]
+fn the_cage_pushes_balls_that_drag_would_stop() {
+    let speeds = speeds(6000.0);
+    for (axial, across) in [(400.0, 1600.0), (100.0, 400.0)] {
+        let mut model = freed(thrust(axial), coulomb(0.07, Creep::Elastic), &speeds);
+        model.effects.push(Box::new(RadialForce {
+            value: across,
+            direction: 0.12,
+            schedule: Schedule::Constant,
+        }));
+        model.effects.push(Box::new(BallDrag { pressure: 5.0 }));
+        model.shaft[3..].fill(ShaftDof::Prescribed(0.0));
+        let solution = equilibrium(&model);
+        let balls = &solution.balls;
+        let orbit = |ball: usize| balls[ball].free.unwrap().orbit_rad_per_s;
+        let force = |ball: &usize| balls[*ball].inner.force_n;
+        let cage: f64 = (0..balls.len()).map(|ball| force(&ball) * orbit(ball)).sum();
+        let cage = cage / (0..balls.len()).map(|ball| force(&ball)).sum::<f64>();
+        let slowest = (0..balls.len()).map(orbit).fold(f64::INFINITY, f64::min);
+        println!("{axial} N: cage {cage}, slowest {slowest}");
+        assert!(
+            relative(slowest, cage - 0.1 * rpm(6000.0)) < 1e-6,
+            "{slowest} {cage}"
+        );
+    }
+}
+
 /// Wrong: where balls skid. Under a growing drag the orbit creeps, then breaks away just below 2 mu Q_i, because spin
 /// takes a little of the grip.
 #[test]
