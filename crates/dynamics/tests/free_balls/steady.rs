@@ -211,7 +211,7 @@ fn the_cage_pushes_balls_that_drag_would_stop() {
         let slowest = (0..balls.len()).map(orbit).fold(f64::INFINITY, f64::min);
         println!("{axial} N: cage {cage}, slowest {slowest}");
         assert!(
-            relative(slowest, cage - 0.1 * rpm(6000.0)) < 1e-6,
+            relative(slowest, cage - 0.1 * rpm(6000.0)) < 1e-3,
             "{slowest} {cage}"
         );
     }
