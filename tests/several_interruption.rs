@@ -227,3 +227,43 @@ fn the_output_of_a_list_at_rest_is_forecast() {
         assert!((0.9..1.5).contains(&forecast), "{forecast}");
     }
 }
+
+/// Wrong: a list that was killed after its last step, before it had summed up, would be called finished and never have
+/// a summary, nor the file in which ParaView finds its steps.
+#[test]
+fn a_list_killed_after_its_last_step_is_summed_up() {
+    for analysis in [EQUILIBRIA, MOTION] {
+        let dir = pair(analysis);
+        succeeds(&dir, &["run", "pair.toml", "--out", "whole"]);
+        for lost in ["summary.json", "rear/summary.json", "front/run.vtkhdf"] {
+            copy(&dir, "whole", "cut");
+            std::fs::remove_file(dir.path(&format!("cut/{lost}"))).unwrap();
+            succeeds(&dir, &["resume", "cut"]);
+            assert!(dir.path(&format!("cut/{lost}")).exists(), "{lost}");
+            assert_same_list(&dir, "whole", "cut");
+            let [whole, cut] = ["whole", "cut"].map(|out| summary(&dir, out));
+            for key in ["status", "shaft", "balls", "bearings"] {
+                assert_eq!(whole[key], cut[key], "{key} after {lost}");
+            }
+            let again = succeeds(&dir, &["resume", "cut"]).stdout;
+            assert!(again.contains("nothing to do: cut has finished"), "{again}");
+            std::fs::remove_dir_all(dir.path("cut")).unwrap();
+        }
+    }
+}
+
+/// Wrong: a list that goes on beyond its end, and fails on the way, would still be called finished, with the shaft of a
+/// step long before.
+#[test]
+fn a_list_that_goes_on_is_not_finished_any_more() {
+    let dir = pair(EQUILIBRIA);
+    succeeds(&dir, &["run", "pair.toml", "--out", "out"]);
+    let longer = ["resume", "out", "--set", "quasi_static.duration=\"2 ms\""];
+    let failed = dir.raceway_with_small_files(16, &longer);
+    assert_eq!(failed.code, Some(2), "{}", failed.stderr);
+    assert!(failed.stderr.contains("File too large"), "{}", failed.stderr);
+    let text = std::fs::read_to_string(dir.path("out/summary.json")).unwrap_or_default();
+    assert!(!text.contains("\"finished\""), "{text}");
+    succeeds(&dir, &longer);
+    assert_eq!(summary(&dir, "out")["status"], "finished");
+}
