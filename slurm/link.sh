@@ -31,8 +31,8 @@ continues() {
     [ "$(link_number)" -gt 0 ]
 }
 
-# Number of the newest step in a folder, packed or not; none when there is none.
-newest_step() {
+# Number of the newest step among the files of one folder, packed or not; -1 when there is none.
+newest_file() {
     local newest=-1 name number
     for name in "$1"/step_*.hdf "$1"/pack_*.hdf; do
         number=${name##*_}
@@ -41,6 +41,24 @@ newest_step() {
         number=$((10#$number))
         [ "$number" -le "$newest" ] || newest=$number
     done
+    echo "$newest"
+}
+
+# Number of the newest step of a run; of a list of bearings, whose folder has the scene and a folder for each of them,
+# the newest one that all have. none when there is none.
+newest_step() {
+    local newest=-1 own= bearing number
+    if [ -e "$1/scene.toml" ]; then
+        for bearing in "$1"/*/mesh.hdf; do
+            bearing=${bearing%/mesh.hdf}
+            [[ -d "$bearing" && "${bearing##*/}" != superseded_* ]] || continue
+            number=$(newest_file "$bearing")
+            [[ -n "$own" && "$number" -ge "$newest" ]] || newest=$number
+            own=yes
+        done
+    else
+        newest=$(newest_file "$1")
+    fi
     [ "$newest" -ge 0 ] || newest=none
     echo "$newest"
 }

@@ -104,6 +104,36 @@ fn a_later_link_resumes_when_there_is_a_step() {
     assert!(dir.text("out.links").contains("resume from step 41\n"));
 }
 
+/// Wrong: a motion of several bearings, whose steps lie in folders of their own, would begin again, be refused because
+/// of its own results, and never end.
+#[test]
+fn a_later_link_resumes_a_list_of_bearings_from_the_step_that_all_have() {
+    let dir = job("exit 0");
+    for (name, steps) in [
+        ("front", &[0, 8, 16][..]),
+        ("rear", &[0, 8]),
+        ("superseded_1", &[24]),
+    ] {
+        std::fs::create_dir_all(dir.path(&format!("out/{name}"))).unwrap();
+        dir.write(&format!("out/{name}/mesh.hdf"), "");
+        for step in steps {
+            dir.write(&format!("out/{name}/step_{step:06}.hdf"), "");
+        }
+    }
+    dir.write("out/scene.toml", "");
+    assert_eq!(end(start(&dir, 1)).0, Some(0));
+    assert_eq!(dir.text("calls"), "--threads 3 resume out\n");
+    assert!(dir.text("out.links").contains("resume from step 8\n"));
+
+    std::fs::remove_file(dir.path("out/rear/step_000000.hdf")).unwrap();
+    std::fs::remove_file(dir.path("out/rear/step_000008.hdf")).unwrap();
+    assert_eq!(end(start(&dir, 1)).0, Some(0));
+    assert!(
+        dir.text("calls").contains(" run scene.toml "),
+        "no step that both have"
+    );
+}
+
 /// Wrong: the run would not hear that its time is over; a job that somebody cancels would come back.
 #[test]
 fn signals_reach_the_run_and_only_usr1_queues_it_again() {
