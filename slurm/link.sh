@@ -93,6 +93,11 @@ choose_launcher() {
     else
         launcher=(srun)
     fi
+    # From Slurm 22.05 on srun does not take over --cpus-per-task: all threads of a rank would share one core. (mpirun,
+    # which starts its own daemons by srun, gets none of it: their ranks would share the cores of one.)
+    if [ "${launcher[0]##*/}" = srun ]; then
+        export SRUN_CPUS_PER_TASK=${SRUN_CPUS_PER_TASK:-${SLURM_CPUS_PER_TASK:-1}}
+    fi
     command -v "${launcher[0]}" > /dev/null || {
         say "$ranks ranks need a launcher, and ${launcher[0]} is not on the PATH; set RACEWAY_LAUNCHER"
         exit 2
@@ -161,13 +166,20 @@ chain_next() {
     local script="$1" limit log next
     shift
     limit=$(squeue -h -j "$SLURM_JOB_ID" -o %l)
-    # One log for the whole chain.
-    log=$(scontrol show job "$SLURM_JOB_ID" -o | tr ' ' '\n' | sed -n 's|^StdOut=||p')
+    # One log for the whole chain; its name may have spaces.
+    log=$(scontrol show job "$SLURM_JOB_ID" | sed -n 's|^ *StdOut=||p')
     local resources=(--ntasks="${SLURM_NTASKS:-1}" --cpus-per-task="${SLURM_CPUS_PER_TASK:-1}" --time="$limit"
         --job-name="$SLURM_JOB_NAME" --output="${log:-raceway-%j.log}")
     [ -z "${SLURM_JOB_PARTITION:-}" ] || resources+=(--partition="$SLURM_JOB_PARTITION")
     [ -z "${SLURM_JOB_ACCOUNT:-}" ] || resources+=(--account="$SLURM_JOB_ACCOUNT")
+    [ -z "${SLURM_JOB_QOS:-}" ] || resources+=(--qos="$SLURM_JOB_QOS")
+    [ -z "${SLURM_JOB_RESERVATION:-}" ] || resources+=(--reservation="$SLURM_JOB_RESERVATION")
     [ -z "${SLURM_MEM_PER_NODE:-}" ] || resources+=(--mem="$SLURM_MEM_PER_NODE")
+    [ -z "${SLURM_MEM_PER_CPU:-}" ] || resources+=(--mem-per-cpu="$SLURM_MEM_PER_CPU")
+    # What no variable of a job tells, such as --signal.
+    local more=()
+    read -r -a more <<< "${RACEWAY_CHAIN_OPTIONS:-}"
+    resources+=("${more[@]}")
     next=$(RACEWAY_LINK=$(($(link_number) + 1)) sbatch --parsable --dependency=afterany:"$SLURM_JOB_ID" \
         --kill-on-invalid-dep=yes "${resources[@]}" "$root/slurm/$script" "$@") || {
         say "sbatch did not take the next link; go on with: sbatch slurm/resume.sbatch $dir"

@@ -134,6 +134,57 @@ fn a_later_link_resumes_a_list_of_bearings_from_the_step_that_all_have() {
     );
 }
 
+/// Wrong: all threads of a rank that srun starts would share one core; the next job of a chain would lack memory or
+/// quality of service, and be killed or refused.
+#[test]
+fn threads_and_resources_are_handed_on() {
+    let dir = job("echo \"threads ${SRUN_CPUS_PER_TASK:-none}\" >> seen\nexit 75");
+    for (name, text) in [
+        ("bin/srun", "#!/bin/bash\nexec \"$@\"\n"),
+        ("bin/launch", "#!/bin/bash\nexec \"$@\"\n"),
+        ("bin/squeue", "#!/bin/bash\necho 1:00:00\n"),
+        (
+            "bin/sbatch",
+            "#!/bin/bash\nprintf '%s\\n' \"$@\" >> submitted\necho 8\n",
+        ),
+        ("bin/scontrol", "#!/bin/bash\necho '   StdOut=/logs/my run.log'\n"),
+    ] {
+        dir.write(name, text);
+        std::fs::set_permissions(dir.path(name), std::fs::Permissions::from_mode(0o755)).unwrap();
+    }
+    let given = [
+        ("SLURM_NTASKS", "2"),
+        ("SLURM_JOB_NAME", "raceway"),
+        ("SLURM_MEM_PER_CPU", "2048"),
+        ("SLURM_JOB_QOS", "long"),
+        ("RACEWAY_CONTINUE", "chain"),
+        ("RACEWAY_CHAIN_OPTIONS", "--signal=B:USR1@600 --nodes=1"),
+    ];
+    for (launcher, threads) in [("srun", "threads 3\n"), ("launch", "threads none\n")] {
+        let variables: Vec<_> = given
+            .into_iter()
+            .chain([("RACEWAY_LAUNCHER", launcher)])
+            .collect();
+        let (code, stderr) = end(start_with(&dir, 0, &variables));
+        assert_eq!((code, dir.text("seen").as_str()), (Some(0), threads), "{stderr}");
+        std::fs::remove_file(dir.path("seen")).unwrap();
+    }
+    let submitted = dir.text("submitted");
+    for option in [
+        "--mem-per-cpu=2048",
+        "--qos=long",
+        "--output=/logs/my run.log",
+        "--signal=B:USR1@600",
+        "--nodes=1",
+        "--time=1:00:00",
+    ] {
+        assert!(
+            submitted.lines().any(|line| line == option),
+            "{option}: {submitted}"
+        );
+    }
+}
+
 /// Wrong: the run would not hear that its time is over; a job that somebody cancels would come back.
 #[test]
 fn signals_reach_the_run_and_only_usr1_queues_it_again() {
