@@ -267,3 +267,43 @@ fn a_job_writes_through_no_link() {
     assert_eq!(dir.text("precious"), "precious");
     assert!(!dir.path("calls").exists(), "the run was started");
 }
+
+/// Runs a script of `slurm/` with the stand-ins of a folder.
+fn script(dir: &Dir, name: &str, arguments: &[&str]) -> (Option<i32>, String) {
+    let root = env!("CARGO_MANIFEST_DIR");
+    let path = format!("{}:{}", dir.path("bin").display(), std::env::var("PATH").unwrap());
+    let child = Command::new("bash")
+        .arg(format!("{root}/slurm/{name}"))
+        .args(arguments)
+        .current_dir(dir.path(""))
+        .env("RACEWAY", dir.path("raceway"))
+        .env("PATH", path)
+        .stdout(Stdio::null())
+        .stderr(Stdio::piped())
+        .spawn();
+    end(child.unwrap())
+}
+
+/// Wrong: numbers of one column would stand under the name of another, where a setting changes which columns there are.
+#[test]
+fn rows_of_jobs_with_other_columns_stand_below_their_names() {
+    let dir = job("");
+    std::fs::create_dir(dir.path("sweep")).unwrap();
+    dir.write("sweep/sweep.txt", "scene=scene.toml\npoints=3\nper_job=1\n");
+    dir.write("sweep/settings.txt", "a=1\nb=2\nc=3\n");
+    for (part, table) in [
+        (0, "step,force_n\n0,10.5\n1,11.5\n"),
+        (1, "step,spin_rad_per_s,force_n\n0,7.25,12.5\n"),
+        (2, "step,force_n\n0,13.5\n"),
+    ] {
+        std::fs::create_dir(dir.path(&format!("sweep/part_{part:05}"))).unwrap();
+        dir.write(&format!("sweep/part_{part:05}/balls.csv"), table);
+        dir.write(&format!("sweep/part_{part:05}.exit"), "0\n");
+    }
+    let (code, stderr) = script(&dir, "table", &["sweep"]);
+    assert_eq!(code, Some(0), "{stderr}");
+    assert_eq!(
+        dir.text("sweep/balls.csv"),
+        "point,step,force_n,spin_rad_per_s\n0,0,10.5,\n0,1,11.5,\n1,0,12.5,7.25\n2,0,13.5,\n"
+    );
+}
