@@ -73,6 +73,22 @@ is_stalled() {
         END { exit !(stalled >= most) }' "$log"
 }
 
+# Those of the options of sbatch that say who pays and where jobs run, in the array account: a site may refuse the job of
+# a table without them.
+account_options() {
+    account=()
+    while [ $# -gt 0 ]; do
+        case "$1" in
+            --account=* | --partition=* | --qos=* | --reservation=* | --clusters=* | -[ApqM]?*) account+=("$1") ;;
+            --account | --partition | --qos | --reservation | --clusters | -[ApqM])
+                [ $# -lt 2 ] || account+=("$1" "$2")
+                shift
+                ;;
+        esac
+        [ $# -eq 0 ] || shift
+    done
+}
+
 # Command that starts the ranks, in the array launcher; empty for one rank.
 choose_launcher() {
     local ranks="${SLURM_NTASKS:-1}"

@@ -307,3 +307,27 @@ fn rows_of_jobs_with_other_columns_stand_below_their_names() {
         "point,step,force_n,spin_rad_per_s\n0,0,10.5,\n0,1,11.5,\n1,0,12.5,7.25\n2,0,13.5,\n"
     );
 }
+
+/// Wrong: a site that asks for an account would run the points and refuse the job of their table.
+#[test]
+fn the_job_of_a_table_has_the_account_of_the_points() {
+    let dir = job("");
+    dir.write("scene.toml", "");
+    dir.write("settings", "a=1\n");
+    let refuses = "#!/bin/bash\n[[ \" $* \" == *\" --account=ours -p fast \"* ]] || exit 1\necho 5\n";
+    dir.write("bin/sbatch", refuses);
+    std::fs::set_permissions(dir.path("bin/sbatch"), std::fs::Permissions::from_mode(0o755)).unwrap();
+    let of_site = ["--", "--account=ours", "-p", "fast", "--time=1:00:00"];
+    let sweep = ["scene.toml", "out", "--settings", "settings"];
+    let (code, stderr) = script(&dir, "sweep", &[&sweep[..], &of_site].concat());
+    assert_eq!(code, Some(0), "{stderr}");
+    let study = ["scene.toml", "points"];
+    let (code, stderr) = script(&dir, "study", &[&study[..], &of_site].concat());
+    assert_eq!(code, Some(0), "{stderr}");
+    // What is refused says so, and leaves the folder free.
+    for _ in 0..2 {
+        let (code, stderr) = script(&dir, "sweep", &["scene.toml", "other", "--settings", "settings"]);
+        assert_eq!(code, Some(2));
+        assert!(stderr.contains("sweep: sbatch refused the array"), "{stderr}");
+    }
+}
