@@ -63,6 +63,11 @@ newest_step() {
     echo "$newest"
 }
 
+# Whether a run that has stopped can be gone on with: the points of a sweep that are left are a run of their own.
+is_resumable() {
+    ! grep -qs '^ *"analysis": *"sweep"' "$1/summary.json"
+}
+
 # Whether as many links as may have begun at this step, one after the other.
 is_stalled() {
     local log="$1" step="$2"
@@ -241,6 +246,10 @@ link() {
     if [ -n "$said_to_stop" ] && [ "$code" -eq "$killed_by_usr1" ]; then
         say "the signal came before the first step"
         code=$stopped_early
+    fi
+    if [ "$code" -eq "$stopped_early" ] && ! is_resumable "$dir"; then
+        say "the sweep stopped early and keeps the points that it has; a new run solves the others, with --points"
+        exit "$stopped_early"
     fi
     if [ "$code" -eq "$stopped_early" ] && [ -z "$ended" ]; then
         continue_chain "$script" "$@"

@@ -331,3 +331,12 @@ fn the_job_of_a_table_has_the_account_of_the_points() {
         assert!(stderr.contains("sweep: sbatch refused the array"), "{stderr}");
     }
 }
+
+/// Wrong: a sweep whose time is over would wait in the queue to be resumed, which it cannot be.
+#[test]
+fn a_sweep_that_stopped_is_not_queued_again() {
+    let dir = job("mkdir -p out\necho '  \"analysis\": \"sweep\",' > out/summary.json\nexit 75");
+    let (code, stderr) = end(start(&dir, 0));
+    assert_eq!((code, was_requeued(&dir)), (Some(75), false), "{stderr}");
+    assert!(stderr.contains("with --points"), "{stderr}");
+}
