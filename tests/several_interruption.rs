@@ -295,3 +295,28 @@ fn a_list_that_goes_on_is_not_finished_any_more() {
     succeeds(&dir, &longer);
     assert_eq!(summary(&dir, "out")["status"], "finished");
 }
+
+/// Wrong: who has moved the results of a list, or lost a part of them, would not be told what helps.
+#[test]
+fn a_list_that_was_moved_or_is_not_whole_says_what_helps() {
+    let dir = pair(EQUILIBRIA);
+    succeeds(&dir, &["run", "pair.toml", "--out", "out"]);
+    std::fs::create_dir_all(dir.path("far/away")).unwrap();
+    std::fs::rename(dir.path("out"), dir.path("far/away/out")).unwrap();
+    let longer = ["--set", "quasi_static.duration=\"2 ms\""];
+    let resume = |more: &[&str]| dir.raceway(&[&["resume", "far/away/out"], more, &longer[..]].concat());
+    let refused = resume(&[]);
+    assert_eq!(refused.code, Some(2));
+    assert!(
+        refused.stderr.contains("--scene says where it is"),
+        "{}",
+        refused.stderr
+    );
+    let helped = resume(&["--scene", "pair.toml"]);
+    assert_eq!(helped.code, Some(0), "{}", helped.stderr);
+    std::fs::remove_dir_all(dir.path("far/away/out/rear")).unwrap();
+    let refused = resume(&["--scene", "pair.toml"]);
+    assert_eq!(refused.code, Some(2));
+    let expected = "the folder far/away/out/rear of a bearing is not there";
+    assert!(refused.stderr.contains(expected), "{}", refused.stderr);
+}
