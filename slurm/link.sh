@@ -31,8 +31,8 @@ continues() {
     [ "$(link_number)" -gt 0 ]
 }
 
-# Number of the newest step in a folder, packed or not; none when there is none.
-newest_step() {
+# Number of the newest step among the files of one folder, packed or not; -1 when there is none.
+newest_file() {
     local newest=-1 name number
     for name in "$1"/step_*.hdf "$1"/pack_*.hdf; do
         number=${name##*_}
@@ -41,8 +41,31 @@ newest_step() {
         number=$((10#$number))
         [ "$number" -le "$newest" ] || newest=$number
     done
+    echo "$newest"
+}
+
+# Number of the newest step of a run; of a list of bearings, whose folder has the scene and a folder for each of them,
+# the newest one that all have. none when there is none.
+newest_step() {
+    local newest=-1 own= bearing number
+    if [ -e "$1/scene.toml" ]; then
+        for bearing in "$1"/*/mesh.hdf; do
+            bearing=${bearing%/mesh.hdf}
+            [[ -d "$bearing" && "${bearing##*/}" != superseded_* ]] || continue
+            number=$(newest_file "$bearing")
+            [[ -n "$own" && "$number" -ge "$newest" ]] || newest=$number
+            own=yes
+        done
+    else
+        newest=$(newest_file "$1")
+    fi
     [ "$newest" -ge 0 ] || newest=none
     echo "$newest"
+}
+
+# Whether a run that has stopped can be gone on with: the points of a sweep that are left are a run of their own.
+is_resumable() {
+    ! grep -qs '^ *"analysis": *"sweep"' "$1/summary.json"
 }
 
 # Whether as many links as may have begun at this step, one after the other.
@@ -53,6 +76,22 @@ is_stalled() {
         $1 == "chain" { stalled = 0 }
         $1 == "start" { stalled = $NF == step ? stalled + 1 : 0 }
         END { exit !(stalled >= most) }' "$log"
+}
+
+# Those of the options of sbatch that say who pays and where jobs run, in the array account: a site may refuse the job of
+# a table without them.
+account_options() {
+    account=()
+    while [ $# -gt 0 ]; do
+        case "$1" in
+            --account=* | --partition=* | --qos=* | --reservation=* | --clusters=* | -[ApqM]?*) account+=("$1") ;;
+            --account | --partition | --qos | --reservation | --clusters | -[ApqM])
+                [ $# -lt 2 ] || account+=("$1" "$2")
+                shift
+                ;;
+        esac
+        [ $# -eq 0 ] || shift
+    done
 }
 
 # Command that starts the ranks, in the array launcher; empty for one rank.
@@ -74,6 +113,11 @@ choose_launcher() {
         fi
     else
         launcher=(srun)
+    fi
+    # From Slurm 22.05 on srun does not take over --cpus-per-task: all threads of a rank would share one core. (mpirun,
+    # which starts its own daemons by srun, gets none of it: their ranks would share the cores of one.)
+    if [ "${launcher[0]##*/}" = srun ]; then
+        export SRUN_CPUS_PER_TASK=${SRUN_CPUS_PER_TASK:-${SLURM_CPUS_PER_TASK:-1}}
     fi
     command -v "${launcher[0]}" > /dev/null || {
         say "$ranks ranks need a launcher, and ${launcher[0]} is not on the PATH; set RACEWAY_LAUNCHER"
@@ -143,13 +187,20 @@ chain_next() {
     local script="$1" limit log next
     shift
     limit=$(squeue -h -j "$SLURM_JOB_ID" -o %l)
-    # One log for the whole chain.
-    log=$(scontrol show job "$SLURM_JOB_ID" -o | tr ' ' '\n' | sed -n 's|^StdOut=||p')
+    # One log for the whole chain; its name may have spaces.
+    log=$(scontrol show job "$SLURM_JOB_ID" | sed -n 's|^ *StdOut=||p')
     local resources=(--ntasks="${SLURM_NTASKS:-1}" --cpus-per-task="${SLURM_CPUS_PER_TASK:-1}" --time="$limit"
         --job-name="$SLURM_JOB_NAME" --output="${log:-raceway-%j.log}")
     [ -z "${SLURM_JOB_PARTITION:-}" ] || resources+=(--partition="$SLURM_JOB_PARTITION")
     [ -z "${SLURM_JOB_ACCOUNT:-}" ] || resources+=(--account="$SLURM_JOB_ACCOUNT")
+    [ -z "${SLURM_JOB_QOS:-}" ] || resources+=(--qos="$SLURM_JOB_QOS")
+    [ -z "${SLURM_JOB_RESERVATION:-}" ] || resources+=(--reservation="$SLURM_JOB_RESERVATION")
     [ -z "${SLURM_MEM_PER_NODE:-}" ] || resources+=(--mem="$SLURM_MEM_PER_NODE")
+    [ -z "${SLURM_MEM_PER_CPU:-}" ] || resources+=(--mem-per-cpu="$SLURM_MEM_PER_CPU")
+    # What no variable of a job tells, such as --signal.
+    local more=()
+    read -r -a more <<< "${RACEWAY_CHAIN_OPTIONS:-}"
+    resources+=("${more[@]}")
     next=$(RACEWAY_LINK=$(($(link_number) + 1)) sbatch --parsable --dependency=afterany:"$SLURM_JOB_ID" \
         --kill-on-invalid-dep=yes "${resources[@]}" "$root/slurm/$script" "$@") || {
         say "sbatch did not take the next link; go on with: sbatch slurm/resume.sbatch $dir"
@@ -195,6 +246,10 @@ link() {
     if [ -n "$said_to_stop" ] && [ "$code" -eq "$killed_by_usr1" ]; then
         say "the signal came before the first step"
         code=$stopped_early
+    fi
+    if [ "$code" -eq "$stopped_early" ] && ! is_resumable "$dir"; then
+        say "the sweep stopped early and keeps the points that it has; a new run solves the others, with --points"
+        exit "$stopped_early"
     fi
     if [ "$code" -eq "$stopped_early" ] && [ -z "$ended" ]; then
         continue_chain "$script" "$@"

@@ -355,3 +355,33 @@ fn a_ring_of_too_few_elements_for_its_balls_is_named() {
         }
     }
 }
+
+/// Wrong: a job for modes would ask for a third of the memory that their search takes, and be killed; one that has
+/// several load cases to write while it solves, on one thread, for four fifths.
+#[test]
+fn check_forecasts_the_memory_of_modes_and_of_load_cases() {
+    let turning = "[quasi_static]\nduration = \"0.2 ms\"\nstep = \"20 us\"\noutput_every = 5\n\n[speed]\ninner = \
+                   \"1800 rpm\"";
+    for (analysis, threads) in [
+        ("[modes]\nnumber = 6\nbodies = [\"inner\", \"bearing\"]", "2"),
+        ("[modes]\nnumber = 20\nbodies = [\"outer\"]", "2"),
+        (turning, "1"),
+        (turning, "2"),
+    ] {
+        let dir = rings(198, ElementKind::Hex8);
+        dir.write("scene.toml", SCENE.replace("[static]", analysis));
+        let json = |arguments: &[&str]| -> serde_json::Value {
+            let outcome = dir.raceway(&[arguments, &["scene.toml", "--json", "--threads", threads]].concat());
+            assert_eq!(outcome.code, Some(0), "{}", outcome.stderr);
+            serde_json::from_str(&outcome.stdout).unwrap()
+        };
+        let forecast = json(&["check"])["peak_memory_bytes"].as_f64().unwrap() / 1e6;
+        let measured = json(&["run", "--out", "out"])["summary"]["peak_memory_bytes"].as_f64();
+        let measured = measured.unwrap() / 1e6;
+        println!("{analysis}, {threads} threads: forecast {forecast:.0} MB, measured {measured:.0} MB");
+        assert!(
+            (forecast / measured - 1.0).abs() <= TOLERANCE,
+            "{analysis}, {threads} threads: forecast {forecast:.0} MB, measured {measured:.0} MB"
+        );
+    }
+}

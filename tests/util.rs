@@ -162,7 +162,7 @@ impl Dir {
 
     /// Starts the program here under a limit of the size of its files, kB; writing beyond it is an error.
     pub fn raceway_with_small_files(&self, limit: u32, arguments: &[&str]) -> Outcome {
-        self.raceway_after(&format!("trap '' XFSZ; ulimit -f {limit}"), arguments)
+        self.raceway_after(&format!("ulimit -f {limit}"), arguments)
     }
 
     /// Starts the program here after some words of a shell, such as a limit.

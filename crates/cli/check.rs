@@ -153,14 +153,6 @@ fn print_memory(
             let note = " for the static start; the steps hold mass and stiffness too, and are not forecast";
             (start, note.to_string())
         }
-        (Analysis::Modes(wanted), _) => {
-            let note = format!(
-                " for the static start; the search for modes holds mass, stiffness and {:.0} MB of vectors beside the \
-                 factors",
-                modes::basis_bytes(model, wanted) as f64 / 1e6
-            );
-            (start, note)
-        }
         _ => (start, String::new()),
     };
     answer::add("peak_memory_bytes", peak);

@@ -1,7 +1,7 @@
 //! `raceway export`: steps as files for other tools, VTU for those that read VTK's XML formats, CSV for all others.
 
 use std::ops::RangeInclusive;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use anyhow::anyhow;
 use checkpoint::{Grid, StepRecord, all_steps, read_any_step, read_mesh};
@@ -11,7 +11,7 @@ use results::bodies::where_bodies_are;
 use results::export::{csv, integration_points, vtu};
 use results::failure::Failure;
 use results::summary::{bodies_shown_in, read_summary};
-use results::whole::{make_output_folder, write_new};
+use results::whole::{make_output_folder, require_free, write_new};
 
 /// File of the times of all steps.
 pub const TIMES: &str = "run.pvd";
@@ -113,6 +113,7 @@ pub fn export(request: &Export) -> Result<(), Failure> {
     let grid = read_mesh(dir)?;
     let out = request.folder();
     make_output_folder(request.out.as_deref(), &out)?;
+    require_free_files(&out, &steps, request.to)?;
     let extension = request.to.extension();
     let mut names = Vec::new();
     for step in steps {
@@ -135,6 +136,23 @@ pub fn export(request: &Export) -> Result<(), Failure> {
     }
     request.say_written(names.len());
     Ok(())
+}
+
+/// Fails if anything would be written over, before the first file is.
+fn require_free_files(out: &Path, steps: &[u64], form: ExportForm) -> Result<(), Failure> {
+    let of_step = |step: &u64| match form {
+        ExportForm::Csv => vec![
+            format!("step_{step:06}.csv"),
+            format!("step_{step:06}_integration_points.csv"),
+        ],
+        ExportForm::Vtu => vec![format!("step_{step:06}.vtu")],
+    };
+    let mut names: Vec<String> = steps.iter().flat_map(of_step).collect();
+    if form == ExportForm::Vtu {
+        names.push(TIMES.to_string());
+    }
+    let names: Vec<&str> = names.iter().map(String::as_str).collect();
+    Ok(require_free(out, &names)?)
 }
 
 /// Fails unless the fields of a step are over the points and cells of a mesh.

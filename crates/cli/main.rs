@@ -392,6 +392,7 @@ fn info_of(path: &Path, verify: bool) -> Result<(), Failure> {
 }
 
 fn execute(arguments: Arguments) -> Result<(), Failure> {
+    results::stop::outlive_file_limit()?;
     prepare(&arguments)?;
     match arguments.command {
         Command::Run {

@@ -7,10 +7,11 @@ use anyhow::anyhow;
 use comm::Communicator;
 use contact::Side;
 use dense::Searched;
-use dynamics::modes::{basis_sizes, bearing_modes, ring_modes};
+use dynamics::modes::{bearing_modes, ring_modes};
 use dynamics::{ModeSet, Model, ModesSettings, RingSupport, StaticSolution, StaticSolver};
 use results::disk::Forecast;
 use results::failure::Failure;
+use results::memory::require_memory;
 use results::modes::{ModeFiles, ModesSummary, print_modes};
 use results::snapshot::Snapshot;
 use results::survey::say_doubts;
@@ -38,6 +39,7 @@ pub fn run(
     let mut progress = Progress::new(wanted.bodies.len() as u64);
     progress.stage("reading meshes");
     let (model, _) = build_model(scene)?;
+    require_memory(scene, &model)?;
     let doubts = doubts(scene, &model);
     say_doubts(&doubts);
     let remarks = Remarks::on(scene, &model, doubts)?;
@@ -102,19 +104,6 @@ pub fn name(body: ModeBody, wanted: &Modes) -> String {
         ModeBody::Outer => format!("outer ring alone, {support}"),
         ModeBody::Bearing => "bearing".to_string(),
     }
-}
-
-/// Bytes of the vectors of the largest search, its restart included.
-pub fn basis_bytes(model: &Model, wanted: &Modes) -> usize {
-    let [alone, bearing] = basis_sizes(wanted.number, model.geometry.n_balls);
-    let n_dofs = |side: Side| model.ring(side).map_or(0, |ring| ring.mesh.n_dofs());
-    let [inner, outer] = Side::BOTH.map(n_dofs);
-    let of_body = |body: &ModeBody| match body {
-        ModeBody::Inner => alone * inner,
-        ModeBody::Outer => alone * outer,
-        ModeBody::Bearing => bearing * (inner + outer),
-    };
-    2 * size_of::<f64>() * wanted.bodies.iter().map(of_body).max().unwrap_or(0)
 }
 
 fn modes_of(

@@ -17,14 +17,12 @@ use input::shell_word;
 use results::about::{MAY_CHANGE, OVERRIDES, SCENE_FILE, WARNINGS, require_named_files, scene_file};
 use results::failure::{Failure, agree};
 use results::folder::start_again;
-use results::integrity::doubts;
-use results::summary::read_summary;
 use scene::{MeshFiles, Scene, difference};
 
 use crate::options::Limits;
 use crate::several_state::ListChanges;
 use crate::shared::{acquire, note_unshared, of_root};
-use crate::stored::{OverTime, Stored};
+use crate::stored::{OverTime, SCENE_IS_AWAY, Stored, is_finished};
 use crate::{motion, quasi_static};
 
 /// What the command line asks for.
@@ -258,9 +256,7 @@ fn scene_of(
     let parsed = Scene::parse(&record.scene, &path, &request.overrides, MeshFiles::MustExist);
     let mut scene = match parsed {
         Err(error) if !path.exists() => {
-            let hint = "the meshes are looked for from the place of the scene file, which is not there: --scene says \
-                        where it is";
-            return Err(anyhow::Error::from(error).context(hint).into());
+            return Err(anyhow::Error::from(error).context(SCENE_IS_AWAY).into());
         }
         parsed => parsed?,
     };
@@ -304,16 +300,6 @@ fn require_same_file(path: &Path, overrides: &[String], (stored, dir): (&str, &P
         refused.join("; ")
     )
     .into())
-}
-
-/// Whether a run got to its end: its last step is the newest, and all that is written after it is there.
-fn is_finished(dir: &Path, step: u64) -> Result<bool, Failure> {
-    let newest = checkpoint::committed_steps(dir)?.last() == Some(&step);
-    let summary = read_summary(dir);
-    let finished = summary.is_some_and(|summary| summary["status"] == "finished");
-    let is_whole = dir.join("run.vtkhdf").exists() && checkpoint::read_mesh(dir).is_ok();
-    // Tables that are not as written are refused, or cut, where a run goes on.
-    Ok(newest && finished && is_whole && doubts(dir)?.is_empty())
 }
 
 fn lines(text: &str) -> Vec<String> {

@@ -10,6 +10,7 @@ use results::bodies::{BodiesElsewhere, bodies_elsewhere, where_bodies_are};
 use results::cut::{TableCut, last_row};
 use results::failure::{Failure, agree};
 use results::files::{Files, ResumedFrom};
+use results::folder::remove_list_summary;
 use results::list_folder::ListStart;
 use results::memory::Forecasts;
 use results::seat::{SeatFolder, SeatSummaries};
@@ -131,7 +132,8 @@ pub fn say_where_bodies_are(bearing: &str, elsewhere: &BodiesElsewhere) {
     }
 }
 
-/// Opens the tables beside the folders of the bearings; what stands after the step is moved aside.
+/// Opens the tables beside the folders of the bearings; what stands after the step is moved aside. The summary of the
+/// run goes, which says nothing of the steps that follow.
 pub fn resume_tables(cuts: &[TableCut], dir: &Path) -> Result<SeveralTables, Failure> {
     if Communicator::world().is_root() {
         results::files::say_folder(dir);
@@ -143,5 +145,10 @@ pub fn resume_tables(cuts: &[TableCut], dir: &Path) -> Result<SeveralTables, Fai
             None => Ok(aside.insert(checkpoint::new_superseded_folder(dir)?).clone()),
         }
     };
+    let outdated = match Communicator::world().is_root() {
+        true => remove_list_summary(dir),
+        false => Ok(()),
+    };
+    agree(outdated.map_err(Failure::from))?;
     agree(SeveralTables::resume(cuts, &mut make_aside).map_err(Failure::from))
 }

@@ -27,7 +27,9 @@ pub fn require_space(
 pub fn forecast(scene: &SeveralScene, assembly: &Assembly, done: u64) -> Forecast {
     let bearings = scene.bearings.iter().zip(&assembly.bearings);
     let each = bearings.map(|(bearing, mounted)| Forecast::new(&bearing.scene, &mounted.model, done));
-    Forecast::of_all(&each.collect::<Vec<_>>())
+    // Five dofs at each place along a beam.
+    let n_places = (assembly.shaft.n() / 5).max(1) as u64;
+    Forecast::of_all(&each.collect::<Vec<_>>(), n_places)
 }
 
 /// Bearings and shaft ready to move.

@@ -13,11 +13,12 @@ use results::list_folder::{ended_early, is_unfinished};
 use results::reduction::take_arrays;
 use results::several::{BEARINGS_TABLE, SCENE_TEXT};
 use results::state_arrays::{self, Arrays};
+use results::summary::read_summary;
 use results::watch::Watch;
 use scene::{AnyScene, BearingOnShaft, MeshFiles, Scene, SeveralScene, difference};
 
 use crate::shared::{acquire, of_root};
-use crate::stored::OverTime;
+use crate::stored::{OverTime, SCENE_IS_AWAY, is_finished};
 
 const SHAFT: &str = "list_shaft";
 const VELOCITY: &str = "list_shaft_velocity";
@@ -183,6 +184,13 @@ fn lock(dir: &Path) -> Result<Locked, Failure> {
         std::fs::read_to_string(&path).with_context(|| format!("{} cannot be read", path.display()))?;
     let names = scene::names_of_bearings(&text);
     let folders: Vec<PathBuf> = names.iter().map(|name| dir.join(name)).collect();
+    if let Some(missing) = folders.iter().find(|folder| !folder.is_dir()) {
+        return Err(anyhow!(
+            "the folder {} of a bearing is not there; run the scene again with another --out",
+            missing.display()
+        )
+        .into());
+    }
     let locks = folders.iter().map(|folder| acquire(folder));
     Ok(Locked {
         locks: locks.collect::<Result<_, Failure>>()?,
@@ -213,7 +221,7 @@ fn read_step(
     let course = OverTime::of(&scene.analysis, dir)?;
     let n_steps = course.n_steps();
     course.require_step(step, &step.to_string())?;
-    if step == n_steps {
+    if step == n_steps && is_list_finished(dir, folders, step)? {
         course.say_finished(dir, &format!("{step} of {n_steps}"));
         return Ok(None);
     }
@@ -234,6 +242,13 @@ fn read_step(
         step,
         bearings,
     }))
+}
+
+/// Whether a run got to its end: what is written after its last step is there, of the list and of all bearings.
+fn is_list_finished(dir: &Path, folders: &[PathBuf], step: u64) -> Result<bool, Failure> {
+    let summed_up = read_summary(dir).is_some_and(|summary| summary["status"] == "finished");
+    let mut whole = folders.iter().map(|folder| is_finished(folder, step));
+    whole.try_fold(summed_up, |all, one| Ok(all && one?))
 }
 
 /// The step of a bearing, whose scene and meshes must be those that the list has `now`; scenes are read at `path`, with
@@ -274,17 +289,17 @@ fn scene_of(
     changes: ListChanges<'_>,
 ) -> Result<SeveralScene, Failure> {
     let overrides = changes.overrides;
-    let of_list = |text: &str, overrides: &[String]| match AnyScene::parse(
-        text,
-        path,
-        overrides,
-        MeshFiles::MustExist,
-    )? {
-        AnyScene::Several(scene) => Ok(*scene),
-        AnyScene::One(_) => Err(Failure::from(anyhow!(
-            "{} has one bearing; expected the list of the run",
-            path.display()
-        ))),
+    let of_list = |text: &str, overrides: &[String]| {
+        let parsed = AnyScene::parse(text, path, overrides, MeshFiles::MustExist);
+        match parsed.map_err(anyhow::Error::from) {
+            Ok(AnyScene::Several(scene)) => Ok(*scene),
+            Ok(AnyScene::One(_)) => Err(Failure::from(anyhow!(
+                "{} has one bearing; expected the list of the run",
+                path.display()
+            ))),
+            Err(error) if !path.exists() => Err(error.context(SCENE_IS_AWAY).into()),
+            Err(error) => Err(error.into()),
+        }
     };
     // Those of the types are not in the text.
     let stored = of_list(text, &scene::overrides_of_types(before))?;

@@ -9,6 +9,7 @@ use comm::print;
 use dynamics::motion::{Motion, MotionState};
 use results::answer;
 use results::failure::Failure;
+use results::integrity::doubts;
 use results::reduction::take_arrays;
 use results::state_arrays::{self, Arrays};
 use results::summary::read_summary;
@@ -17,6 +18,10 @@ use scene::{Analysis, Dynamic, QuasiStatic};
 
 /// Array of a step file that counts Newton's iterations since the start of the run.
 const NEWTON: &str = "newton_iterations";
+
+/// Why files that a scene names are not found when it is not where it was.
+pub const SCENE_IS_AWAY: &str = "the meshes are looked for from the place of the scene file, which is not there: \
+                                 --scene says where it is";
 
 /// What goes on from a step.
 #[derive(Clone, Copy)]
@@ -43,8 +48,8 @@ impl OverTime {
 
     /// Why a step that does not say where its scene is cannot be gone on from: steps of modes do not.
     pub fn without_scene_file(step: &Path, dir: &Path) -> Failure {
-        let summary = read_summary(dir).unwrap_or_default();
-        match summary["analysis"] == "modes" {
+        // A run that was killed has no summary; steps of all others say where their scene is.
+        match read_summary(dir).is_none_or(|summary| summary["analysis"] == "modes") {
             true => OverTime::none_of("[modes]", dir),
             false => anyhow!("{} does not say where its scene is", step.display()).into(),
         }
@@ -102,6 +107,16 @@ impl OverTime {
             self.table()
         ));
     }
+}
+
+/// Whether a run got to its end: its last step is the newest, and all that is written after it is there.
+pub fn is_finished(dir: &Path, step: u64) -> Result<bool, Failure> {
+    let newest = checkpoint::committed_steps(dir)?.last() == Some(&step);
+    let summary = read_summary(dir);
+    let finished = summary.is_some_and(|summary| summary["status"] == "finished");
+    let is_whole = dir.join("run.vtkhdf").exists() && checkpoint::read_mesh(dir).is_ok();
+    // Tables that are not as written are refused, or cut, where a run goes on.
+    Ok(newest && finished && is_whole && doubts(dir)?.is_empty())
 }
 
 /// A step to go on from.

@@ -29,7 +29,7 @@ def test_bearings_of_a_list_have_lines_of_their_own(runs):
     assert sorted(figure.data[2].y) == sorted(own["inner_force_n"])
     lines = raceway.figures.history(results, ["x_m"]).data
     assert len(lines) == results.shaft["position_m"].nunique() and all(len(line.x) == 1 for line in lines)
-    with pytest.raises(raceway.ResultsError, match="several bearings: front, rear; open the folder of one"):
+    with pytest.raises(raceway.ResultsError, match="several bearings: front, rear; take bearing"):
         results.balls_dataset()
 
 

@@ -279,3 +279,19 @@ def test_results_say_what_they_are(runs):
     assert repr(runs.statics()).startswith(f"<raceway.Results {runs.folder / 'statics'}: static, 1 step, tables balls")
     assert "fields displacement, force_inner, force_outer" in repr(runs.statics().step(0))
     assert isinstance(runs.statics().folder, Path)
+
+
+def test_bearings_of_a_list_are_opened_by_name(runs):
+    """Wrong: the scene of a list would be said to be lost, and nothing would tell where its fields are."""
+    results = runs.pair()
+    assert results.bearings == ["front", "rear"]
+    assert "[[bearing]]" in results.scene
+    assert results.bearing("rear").folder == results.folder / "rear"
+    assert results.bearing("rear").bearings == []
+    for ask in (lambda: results.step(-1), lambda: results.mesh, lambda: results.reduction, results.dataset):
+        with pytest.raises(raceway.ResultsError, match=r"bearing\(name\) opens it: front, rear"):
+            ask()
+    with pytest.raises(raceway.ResultsError, match="bearings are front, rear"):
+        results.bearing("left")
+    with pytest.raises(raceway.ResultsError, match="it holds one bearing"):
+        results.bearing("rear").bearing("rear")

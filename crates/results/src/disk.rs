@@ -37,6 +37,17 @@ const CELL_BYTES: u64 = 20;
 /// Cells of a step in the tables: 16 per ball, and about 22 of shaft and energy.
 const BALL_CELLS: u64 = 16;
 const OTHER_CELLS: u64 = 22;
+/// Cells of a step in the tables beside the folders of a list: three more per ball; of each bearing; of each place on
+/// the shaft; and of its energy.
+const LIST_BALL_CELLS: u64 = BALL_CELLS + 3;
+const LIST_BEARING_CELLS: u64 = 17;
+const PLACE_CELLS: u64 = 8;
+const SHAFT_ENERGY_CELLS: u64 = 8;
+/// HDF5's own bytes in the file of the mesh besides its arrays. (Measured: 14 kB.)
+const MESH_FRAME_BYTES: u64 = 14_000;
+/// The summary and the file that shows all steps, and what the latter has of each step. (Measured.)
+const END_BYTES: u64 = 26_000;
+const SHOWN_STEP_BYTES: u64 = 330;
 
 /// Expected size of the results of a scene, bytes. Fields are counted without compression.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -49,12 +60,22 @@ pub struct Forecast {
     pub n_states: u64,
     /// All files.
     pub total: u64,
+    /// What is there once for all load cases: the file of the mesh, of a new run, and what is written at the end.
+    once: u64,
+    /// Rows of tables that have one per step.
+    n_rows: u64,
+    /// Balls, each with a row of its own at such a step.
+    n_balls: u64,
+    /// How to write less, for a message.
+    fewer: &'static str,
 }
 
 impl Forecast {
     /// Forecast for the steps after `done` (0 for a new run, whose start has a file too).
     pub fn new(scene: &Scene, model: &Model, done: u64) -> Forecast {
-        let n_points = rows(&fields::bodies(model), |body| body.points.len());
+        let bodies = fields::bodies(model);
+        let n_points = rows(&bodies, |body| body.points.len());
+        let once = END_BYTES + if done == 0 { mesh_bytes(&bodies) } else { 0 };
         let reduced = ReductionSizes::new(scene, model);
         let has_state = matches!(scene.analysis, Analysis::Dynamic(_) | Analysis::QuasiStatic(_));
         let reduced_state = reduced
@@ -66,7 +87,7 @@ impl Forecast {
         let region = Region::new(scene, model).unwrap_or_default();
         let displacement = displacement_bytes(scene, n_points, region.as_ref());
         let stress = stress_bytes(scene, model, region.as_ref());
-        let others = force_bytes(n_points) + FRAME_BYTES + scene.text.len() as u64;
+        let others = force_bytes(n_points) + FRAME_BYTES + SHOWN_STEP_BYTES + scene.text.len() as u64;
         let step = displacement + stress + state + others;
         let (n_files, n_rows) = match &scene.analysis {
             Analysis::Static => (1, 1),
@@ -76,11 +97,9 @@ impl Forecast {
             Analysis::QuasiStatic(quasi) => files_and_rows(quasi.output_every, quasi.n_steps, done),
         };
         // Every step with fields has a row besides.
-        let every = scene.output.tables_every;
-        let n_rows = if every == 1 {
-            n_rows
-        } else {
-            n_rows.min(n_rows / every + n_files)
+        let n_rows = match scene.output.tables_every {
+            1 => n_rows,
+            every => n_rows.min(n_rows / every + n_files),
         };
         let n_of = |every: u64| match &scene.analysis {
             Analysis::Dynamic(dynamic) => n_states(dynamic, every, done),
@@ -99,23 +118,37 @@ impl Forecast {
         let reduction = reduced.map_or(0, |sizes| {
             sizes.file_numbers() as u64 * bytes_of(scene.output.precision)
         });
-        let cells = BALL_CELLS * model.geometry.n_balls as u64 + OTHER_CELLS;
+        let n_balls = model.geometry.n_balls as u64;
+        let tables = n_rows * (BALL_CELLS * n_balls + OTHER_CELLS) * CELL_BYTES;
         Forecast {
             step,
             n_files,
             n_states,
-            total: n_files * others + fields + n_states * state + reduction + n_rows * cells * CELL_BYTES,
+            total: once + n_files * others + fields + n_states * state + reduction + tables,
+            once,
+            n_rows,
+            n_balls,
+            fewer: fewer(&scene.analysis),
         }
     }
 
-    /// Of bearings that write side by side: `step` is the mean of their step files.
-    pub fn of_all(bearings: &[Forecast]) -> Forecast {
+    /// Of bearings that write side by side, with the tables beside their folders, which have so many places of the
+    /// shaft: `step` is the mean of their step files.
+    pub fn of_all(bearings: &[Forecast], n_places: u64) -> Forecast {
         let sum = |of: fn(&Forecast) -> u64| bearings.iter().map(of).sum::<u64>();
+        let (n, n_balls) = (bearings.len() as u64, sum(|own| own.n_balls));
+        let n_rows = bearings.iter().map(|own| own.n_rows).max().unwrap_or(0);
+        let cells = LIST_BALL_CELLS * n_balls + LIST_BEARING_CELLS * n + PLACE_CELLS * n_places;
+        let tables = n_rows * (cells + SHAFT_ENERGY_CELLS) * CELL_BYTES;
         Forecast {
-            step: sum(|own| own.step) / (bearings.len() as u64).max(1),
+            step: sum(|own| own.step) / n.max(1),
             n_files: sum(|own| own.n_files),
             n_states: sum(|own| own.n_states),
-            total: sum(|own| own.total),
+            total: sum(|own| own.total) + tables,
+            once: sum(|own| own.once),
+            n_rows,
+            n_balls,
+            fewer: bearings.first().map_or("", |own| own.fewer),
         }
     }
 
@@ -125,7 +158,9 @@ impl Forecast {
             step: self.step,
             n_files: n * self.n_files,
             n_states: n * self.n_states,
-            total: n * self.total,
+            total: n * (self.total - self.once) + self.once,
+            n_rows: n * self.n_rows,
+            ..self
         }
     }
 
@@ -172,8 +207,19 @@ impl Forecast {
             return Ok(());
         }
         Err(Failure::User(anyhow!(
-            "{what}; write fewer steps with dynamic.output_every, choose another --out, or pass --ignore-disk-space"
+            "{what}; {}choose another --out, or pass --ignore-disk-space",
+            self.fewer
         )))
+    }
+}
+
+/// How an analysis would write less.
+fn fewer(analysis: &Analysis) -> &'static str {
+    match analysis {
+        Analysis::Dynamic(_) => "write fewer steps with dynamic.output_every, ",
+        Analysis::QuasiStatic(_) => "write fewer steps with quasi_static.output_every, ",
+        Analysis::Sweep(_) => "solve some of the points with --points, ",
+        Analysis::Static | Analysis::Modes(_) => "",
     }
 }
 
@@ -188,6 +234,13 @@ fn files_and_rows(every: u64, n: u64, done: u64) -> (u64, u64) {
 fn n_states(dynamic: &Dynamic, restart_every: u64, done: u64) -> u64 {
     let every = dynamic.output_every.saturating_mul(restart_every);
     files_and_rows(every, dynamic.n_steps, done).0
+}
+
+/// Bytes of the file of the mesh: points, cells with their kinds, bodies and radii.
+fn mesh_bytes(bodies: &[Body]) -> u64 {
+    let points = 8 * VECTOR * rows(bodies, |body| body.points.len());
+    let corners = 8 * rows(bodies, |body| body.connectivity.len());
+    MESH_FRAME_BYTES + points + corners + (8 + 8 + 1 + 1) * rows(bodies, Body::n_cells)
 }
 
 /// Bytes of the forces of both rings on the balls.

@@ -232,15 +232,22 @@ fn require_no_results(
 /// Removes the files of the end of a run. What they say is not true any more until it ends again, or gets to its next
 /// state.
 pub(crate) fn remove_outdated(dir: &Path) -> anyhow::Result<()> {
-    for name in [SUMMARY_FILE, REDUCTION_FILE] {
-        match std::fs::remove_file(dir.join(name)) {
-            Err(error) if error.kind() != std::io::ErrorKind::NotFound => {
-                return Err(anyhow!("cannot remove the old {name}: {error}"));
-            }
-            _ => {}
+    remove_old(dir, SUMMARY_FILE)?;
+    remove_old(dir, REDUCTION_FILE)
+}
+
+/// Removes the summary of a list of bearings whose run goes on, for the same reason.
+pub fn remove_list_summary(dir: &Path) -> anyhow::Result<()> {
+    remove_old(dir, SUMMARY_FILE)
+}
+
+fn remove_old(dir: &Path, name: &str) -> anyhow::Result<()> {
+    match std::fs::remove_file(dir.join(name)) {
+        Err(error) if error.kind() != std::io::ErrorKind::NotFound => {
+            Err(anyhow!("cannot remove the old {name}: {error}"))
         }
+        _ => Ok(()),
     }
-    Ok(())
 }
 
 /// Says what the mesh file was before it was written again, if it was.

@@ -9,7 +9,6 @@
 use std::sync::Arc;
 
 use comm::Communicator;
-use contact::Side;
 use dynamics::modes::basis_sizes;
 use dynamics::{Model, MotionMemory, RingMemory, RingModel, forecast_motion_peak, forecast_peak};
 use scene::{Analysis, Modes, Scene};
@@ -17,9 +16,8 @@ use scene::{Analysis, Modes, Scene};
 use crate::failure::Failure;
 use crate::memory::{
     Bound, MOST_PER_NODE, bound, bytes_of_points, queued_steps, reduction_memory, require, rings_at_once,
-    rings_of, with_bodies, with_reduction,
+    rings_of, tied_bytes, with_bodies, with_reduction, written_bytes,
 };
-use crate::seat::tied;
 
 /// Files and tables of a bearing after the first, bytes, measured on rigid rings.
 const BEARING_BYTES: usize = 2_400_000;
@@ -121,7 +119,10 @@ fn points_of(analysis: &Analysis, bearings: &[BearingMemory<'_>]) -> usize {
         _ => return 0,
     };
     let listed = bearings.iter().map(|bearing| (bearing.rest, bearing.model));
-    bytes_of_points(listed, n_points)
+    let written = bearings
+        .iter()
+        .map(|bearing| written_bytes(bearing.scene, bearing.model, n_points));
+    bytes_of_points(listed, n_points) + written.sum::<usize>()
 }
 
 /// Forecast of the steps of a motion without bodies, bytes; None where there is none.
@@ -187,16 +188,6 @@ pub fn forecast_modes_of_list(wanted: &Modes, bearings: &[BearingMemory<'_>]) ->
         .map(|bearing| tied_bytes(bearing.model))
         .sum::<usize>();
     with_bodies(sum, models_of(bearings))
-}
-
-/// Copies of a block of vectors that a ring in a body takes at a time, beside those of all rings, measured.
-const TIED_BLOCKS: usize = 8;
-
-/// What rings in bodies take in the search for modes on the way through the joint, bytes: blocks of vectors.
-fn tied_bytes(model: &Model) -> usize {
-    let rings = Side::BOTH.into_iter().filter_map(|side| tied(model, side));
-    let n_dofs: usize = rings.map(|(ring, _)| ring.mesh.n_dofs()).sum();
-    TIED_BLOCKS * model.geometry.n_balls * n_dofs * size_of::<f64>()
 }
 
 fn models_of<'m>(bearings: &[BearingMemory<'m>]) -> impl Iterator<Item = &'m Model> {

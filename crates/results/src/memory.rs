@@ -7,6 +7,7 @@ use anyhow::anyhow;
 use body::{BodyModes, SeatTie};
 use comm::Communicator;
 use contact::Side;
+use dynamics::modes::basis_sizes;
 use dynamics::motion::Motion;
 use dynamics::points::{most_ahead, points_per_start, threads_of_points};
 use dynamics::statics::settings;
@@ -14,7 +15,7 @@ use dynamics::{
     Model, MotionMemory, Numbers, Prepared, RingMemory, RingModel, forecast_motion_peak, forecast_peak,
 };
 use rustix::process::{Resource, getrlimit};
-use scene::{Analysis, Dynamic, Scene};
+use scene::{Analysis, Dynamic, ModeBody, Modes, Scene, StressOutput};
 
 use crate::failure::Failure;
 use crate::reduction_sizes::ReductionSizes;
@@ -56,7 +57,7 @@ impl Forecasts {
         (scene, model): (&Scene, &Model),
         n_points: u64,
     ) -> Forecasts {
-        let peak = forecast_peak(rings, rings_at_once()) + points_bytes(rings, model, n_points);
+        let peak = forecast_peak(rings, rings_at_once()) + points_bytes(rings, (scene, model), n_points);
         Forecasts {
             rings,
             peak: Some(beside_rings(peak, model) + reduction_memory(scene, model)),
@@ -81,12 +82,29 @@ impl Forecasts {
 }
 
 /// What is held beside the rings when points are solved ahead of the one that is written, bytes: displacements of all
-/// of them, load and displacements under way on every thread, and there, beyond two, the columns of a ring.
-fn points_bytes(rings: [Option<RingMemory>; 2], model: &Model, n_points: u64) -> usize {
-    bytes_of_points([(rings, model)].into_iter(), n_points)
+/// of them, load and displacements under way on every thread, and there, beyond two, the columns of a ring; and what is
+/// written.
+fn points_bytes(rings: [Option<RingMemory>; 2], (scene, model): (&Scene, &Model), n_points: u64) -> usize {
+    bytes_of_points([(rings, model)].into_iter(), n_points) + written_bytes(scene, model, n_points)
 }
 
-/// The same of the bearings of a list.
+/// What is held while a point is written and the next ones are solved, bytes per node of the rings, measured: fields on
+/// their way to the disk, and stress that is made of them. A single point is written when the solver is done.
+const WRITTEN_BYTES: usize = 100;
+const STRESS_BYTES: usize = 200;
+
+/// What points take that are written while others are solved, bytes.
+pub(crate) fn written_bytes(scene: &Scene, model: &Model, n_points: u64) -> usize {
+    let per_node = match (n_points, scene.output.stress) {
+        (..=1, _) => 0,
+        (_, StressOutput::None) => WRITTEN_BYTES,
+        (_, StressOutput::Nodal | StressOutput::IntegrationPoints) => WRITTEN_BYTES + STRESS_BYTES,
+    };
+    let rings = model.rings.iter().flatten();
+    per_node * rings.map(|ring| ring.mesh.n_nodes()).sum::<usize>()
+}
+
+/// What the points of the bearings of a list take that are solved ahead of the one that is written, bytes.
 pub(crate) fn bytes_of_points<'m>(
     bearings: impl Iterator<Item = ([Option<RingMemory>; 2], &'m Model)> + Clone,
     n_points: u64,
@@ -136,9 +154,52 @@ pub fn forecast(
         Analysis::QuasiStatic(quasi) => 1 + quasi.n_steps,
         Analysis::Static | Analysis::Dynamic(_) | Analysis::Modes(_) => 1,
     };
-    let rest = forecast_peak(rings, rings_at_once()) + points_bytes(rings, model, points);
-    let peaks = (beside_rings(rest, model), steps);
+    let rest = forecast_peak(rings, rings_at_once()) + points_bytes(rings, (scene, model), points);
+    let rest = beside_rings(rest, model).max(match analysis {
+        Analysis::Modes(wanted) => forecast_modes(wanted, (scene, model), rings),
+        _ => 0,
+    });
+    let peaks = (rest, steps);
     with_reduction(peaks, analysis, reduction_memory(scene, model))
+}
+
+/// Forecast of the largest resident memory of the search for natural modes, bytes: factor, stiffness and mass of what
+/// vibrates, the vectors of the search, its restart included, two blocks of a vector per ball on their way through a
+/// bearing, and what is written. Measured: -5 to +2 %.
+fn forecast_modes(wanted: &Modes, (scene, model): (&Scene, &Model), rings: [Option<RingMemory>; 2]) -> usize {
+    let n_balls = model.geometry.n_balls;
+    let [alone, bearing] = basis_sizes(wanted.number, n_balls);
+    let of_rings = |sides: &[Side], n_vectors: usize| {
+        let matrices = sides.iter().filter_map(|side| rings[side.index()]);
+        let n_dofs = |side: &Side| model.ring(*side).map_or(0, |ring| ring.mesh.n_dofs());
+        let vectors = size_of::<f64>() * n_vectors * sides.iter().map(n_dofs).sum::<usize>();
+        vectors
+            + matrices
+                .map(|ring| ring.kept + ring.assembly + ring.results)
+                .sum::<usize>()
+    };
+    let of_body = |body: &ModeBody| match body {
+        ModeBody::Inner => of_rings(&Side::BOTH[..1], 2 * alone),
+        ModeBody::Outer => of_rings(&Side::BOTH[1..], 2 * alone),
+        ModeBody::Bearing => of_rings(&Side::BOTH, 2 * (bearing + n_balls)) + tied_bytes(model),
+    };
+    let meshes: usize = rings.iter().flatten().map(|ring| ring.mesh).sum();
+    let search = wanted.bodies.iter().map(of_body).max().unwrap_or(0);
+    let written = written_bytes(scene, model, wanted.number as u64);
+    with_bodies(
+        forecast_peak([None, None], 1) + meshes + search + written,
+        [model],
+    )
+}
+
+/// Copies of a block of vectors that a ring in a body takes at a time, beside those of all rings, measured.
+const TIED_BLOCKS: usize = 8;
+
+/// What rings in bodies take in the search for modes on the way through the joint, bytes: blocks of vectors.
+pub(crate) fn tied_bytes(model: &Model) -> usize {
+    let rings = Side::BOTH.into_iter().filter_map(|side| tied(model, side));
+    let n_dofs: usize = rings.map(|(ring, _)| ring.mesh.n_dofs()).sum();
+    TIED_BLOCKS * model.geometry.n_balls * n_dofs * size_of::<f64>()
 }
 
 /// Peaks at rest and in the steps of a motion, with what `[output.reduction]` takes. A motion is reduced in its steps.

@@ -12,7 +12,7 @@ use std::time::{Duration, Instant};
 use anyhow::{Context, ensure};
 use comm::Communicator;
 use rustix::process;
-use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM, SIGUSR1};
+use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM, SIGUSR1, SIGXFSZ};
 use signal_hook::flag;
 
 /// The signals that stop a run, with their names.
@@ -102,6 +102,13 @@ fn is_ignored(signal: i32) -> bool {
     let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
     let mask = mask.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok());
     mask.is_some_and(|mask| mask >> (signal - 1) & 1 == 1)
+}
+
+/// Lets a write beyond the limit on the size of files (`ulimit -f`) fail as one to a full disk does, with a message and
+/// an exit code. Else the system would end this process without a word.
+pub fn outlive_file_limit() -> anyhow::Result<()> {
+    flag::register(SIGXFSZ, Arc::default()).context("cannot listen to signals")?;
+    Ok(())
 }
 
 /// Lets this process end at once when its parent `pid` ends, however that ends: nobody would use its results.

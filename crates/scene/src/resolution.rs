@@ -29,7 +29,7 @@ const LEAST_STEPS: f64 = 2.0;
 const WIDE_ROWS: f64 = 0.5;
 /// Ball pitches from row to row that are enough for lives to 1 %, with seven balls of which two carry.
 pub const CLOSE_ROWS: f64 = 0.25;
-/// TimeSteps of a pulse from which its shape is there.
+/// Steps of a pulse from which its shape is there.
 const STEPS_PER_PULSE: f64 = 10.0;
 
 /// TimeSteps in time.

@@ -27,7 +27,7 @@ pub struct StarterRequest {
     pub outside: Option<Quantity<LENGTH>>,
     /// Width.
     pub width: Option<Quantity<LENGTH>>,
-    /// SketchNumber of balls.
+    /// Number of balls.
     pub balls: Option<usize>,
     /// Ball diameter.
     pub ball_diameter: Option<Quantity<LENGTH>>,

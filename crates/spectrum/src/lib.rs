@@ -37,7 +37,7 @@ pub struct SpectrumCommand {
     /// Column of probes.csv or shaft.csv, or a probe that has only one column.
     #[arg(long)]
     probe: String,
-    /// LineSpectrum of the envelope of this band, Hz, such as 2000..8000.
+    /// Spectrum of the envelope of this band, Hz, such as 2000..8000.
     #[arg(long, value_name = "LOW..HIGH", conflicts_with = "density")]
     envelope: Option<Band>,
     /// Power spectral density instead of amplitudes.

@@ -33,6 +33,9 @@ if TYPE_CHECKING:
 #: Files of which at least one is in a result folder, besides tables and steps.
 DOCUMENTS = ("summary.json", "stiffness.json", "life.json", "heat.json", "load_matrix.json")
 
+#: The scene of a list of bearings, beside their folders.
+LIST_SCENE = "scene.toml"
+
 
 class Results:
     """A folder that a command of the program has written. Nothing is read before it is asked for."""
@@ -91,16 +94,34 @@ class Results:
         """What `[output.reduction]` found, over points: `stress_maximum` and others in Pa, `damage`, `cycles`."""
         path = self.folder / "reduction.vtkhdf"
         if not path.is_file():
-            raise ResultsError(f"{self.folder} has no reduction.vtkhdf; a scene with [output.reduction] gives it")
+            hint = f"a scene with [output.reduction] gives it{self._of_bearings()}"
+            raise ResultsError(f"{self.folder} has no reduction.vtkhdf; {hint}")
         require_same_run(self.folder / MESH_FILE, Place(path, "/"))
         return read_point_fields(path)
 
     @property
     def scene(self) -> str:
-        """Text of the scene, with its overrides, as it was run; from the newest step."""
+        """Text of the scene, with its overrides, as it was run; from the newest step, or of a list of bearings."""
+        if self.bearings:
+            return (self.folder / LIST_SCENE).read_text(encoding="utf-8")
         if not self.steps:
             raise ResultsError(f"{self.folder} has no steps, which hold the scene")
         return self.step(-1).scene
+
+    @cached_property
+    def bearings(self) -> list[str]:
+        """Names of the bearings of a list, each with a folder of its own; empty if this is none."""
+        if not self.has(LIST_SCENE):
+            return []
+        folders = sorted(path.parent.name for path in self.folder.glob(f"*/{MESH_FILE}"))
+        return [name for name in folders if not name.startswith("superseded_")]
+
+    def bearing(self, name: str) -> Results:
+        """The results of one bearing of a list."""
+        if name not in self.bearings:
+            known = f"bearings are {', '.join(self.bearings)}" if self.bearings else "it holds one bearing, not a list"
+            raise ResultsError(f'{self.folder} has no bearing "{name}"; {known}')
+        return Results(self.folder / name)
 
     @property
     def tables(self) -> list[str]:
@@ -141,7 +162,7 @@ class Results:
         if number < 0 and -number <= len(steps):
             number = steps[number]
         if number not in self._places:
-            known = f"steps are {steps[0]} to {steps[-1]}" if steps else "it has none"
+            known = f"steps are {steps[0]} to {steps[-1]}" if steps else f"it has none{self._of_bearings()}"
             raise ResultsError(f"{self.folder} has no step {number}; {known}")
         place = self._places[number]
         require_same_run(self.folder / MESH_FILE, place)
@@ -153,6 +174,8 @@ class Results:
     @cached_property
     def mesh(self) -> Mesh:
         """Rings and balls, undeformed."""
+        if self.bearings:
+            raise ResultsError(f"{self.folder} has no {MESH_FILE}{self._of_bearings()}")
         return read_mesh(self.folder)
 
     def dataset(self, fields: Iterable[str] = ("displacement",), steps: Iterable[int] | None = None) -> xarray.Dataset:
@@ -160,7 +183,7 @@ class Results:
         xr = _xarray()
         chosen = [self.step(number) for number in (self.steps if steps is None else steps)]
         if not chosen:
-            raise ResultsError(f"{self.folder}: no step is chosen")
+            raise ResultsError(f"{self.folder}: no step is chosen{self._of_bearings()}")
         arrays = {name: _over_steps(name, np.stack([step[name] for step in chosen])) for name in fields}
         points = {axis: ("point", self.mesh.points[:, i], {"units": "m"}) for i, axis in enumerate("xyz")}
         coordinates = {
@@ -180,7 +203,7 @@ class Results:
         xr = _xarray()
         if "bearing" in self.balls:
             names = ", ".join(self.balls["bearing"].unique())
-            raise ResultsError(f"{self.folder} holds the balls of several bearings: {names}; open the folder of one")
+            raise ResultsError(f"{self.folder} holds the balls of several bearings: {names}; take bearing(name)")
         table = self.balls.set_index(["step", "ball"])
         data = xr.Dataset.from_dataframe(table)
         over_steps = [name for name in data if name == "time_s" or "." in str(name)]
@@ -189,6 +212,12 @@ class Results:
     @cached_property
     def _places(self) -> dict[int, Place]:
         return find_steps(self.folder)
+
+    def _of_bearings(self) -> str:
+        """Where fields of a list of bearings are, for messages."""
+        if not self.bearings:
+            return ""
+        return f"; each bearing has its own, bearing(name) opens it: {', '.join(self.bearings)}"
 
     def _document(self, name: str, hint: str) -> dict[str, Any]:
         path = self.folder / name

@@ -1,6 +1,6 @@
 //! Dofs of an eigenproblem that are no coordinates of rings: balls, shaft, a seat that slides.
 
-/// SmallEntries of a matrix: row, column, value.
+/// Entries of a matrix: row, column, value.
 pub type SmallEntries = Vec<(usize, usize, f64)>;
 
 /// The small dofs and their own matrices.

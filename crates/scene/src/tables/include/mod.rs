@@ -79,14 +79,19 @@ impl WholeText {
     }
 
     /// The place of a line of this text after `--set` has changed lines and added some: the last one before that reads
-    /// the same. A line that the command line gives is one of the scene.
+    /// the same. Where tables have been taken out, as of a list of bearings, it is the next one after. A line that the
+    /// command line gives is one of the scene.
     pub fn place_in(&self, edited: &str, line: usize) -> TypedPlace<'_> {
         let Some(wanted) = edited.lines().nth(line.saturating_sub(1)) else {
             return self.place(line);
         };
         let same = |(i, typed): (usize, &str)| (typed == wanted).then_some(i + 1);
-        let before = self.text.lines().enumerate().take(line).filter_map(same);
-        match before.last() {
+        let alike = || self.text.lines().enumerate().filter_map(same);
+        match alike()
+            .take_while(|&i| i <= line)
+            .last()
+            .or_else(|| alike().next())
+        {
             Some(line) => self.place(line),
             None => TypedPlace {
                 path: &self.files[0],

@@ -482,6 +482,12 @@ fn errors_in_a_type_file_are_told_once_with_its_name_and_line() {
     let text = lists.message(&list(BEAM, ""));
     assert_eq!(text.matches("materials.rings.poisson_ratio").count(), 1, "{text}");
     assert!(text.contains(" of types/kind.toml)"), "{text}");
+    // A value of a wrong unit too, though the tables of the list stand before those of the type.
+    let bad = kind().replace("ball_diameter = \"9 mm\"", "ball_diameter = \"9 kg\"");
+    let line = 1 + bad.lines().position(|line| line.contains("\"9 kg\"")).unwrap();
+    std::fs::write(lists.0.join("types/kind.toml"), bad).unwrap();
+    let text = lists.message(&list(BEAM, ""));
+    assert!(text.contains(&format!("types/kind.toml:{line}:")), "{text}");
     std::fs::write(lists.0.join("types/kind.toml"), format!("{}\n[static]\n", kind())).unwrap();
     let text = lists.message(&list(BEAM, ""));
     assert!(
