@@ -100,6 +100,24 @@ fn effects_that_matter_and_are_off_are_pointed_out() {
     assert!(!advice.contains("gravity"), "2 kN and a light shaft: {advice}");
 }
 
+/// Wrong: rules of thumb would take for a load of the balls what the hold of a shaft carries.
+#[test]
+fn forces_along_axes_that_are_held_load_no_ball() {
+    let said = |sets: &[&str]| check(&turning("1800 rpm"), sets);
+    let stretch = |text: &str| -> f64 {
+        let (_, rest) = text
+            .split_once("(2 pi E A) = ")
+            .unwrap_or_else(|| panic!("{text}"));
+        rest.split(' ').next().unwrap().parse().unwrap()
+    };
+    let z = "shaft.z=1 um";
+    let [free, held] = [&[][..], &[z][..]].map(|sets| stretch(&said(sets)));
+    // 2 kN along the axis at 14.9 deg carry more than 1 kN across.
+    assert!(held < 0.6 * free, "{held} of {free}");
+    let none = said(&[z, "shaft.x=locked", "shaft.y=locked"]);
+    assert!(!none.contains("a ring that nothing holds"), "{none}");
+}
+
 /// Wrong: a user would go on paying for effects that do nothing, or be told so of effects that do.
 #[test]
 fn effects_that_do_nothing_and_are_on_are_pointed_out() {

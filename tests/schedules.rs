@@ -16,6 +16,27 @@ fn late_force() -> Dir {
     Dir::with_scene(&moving.replace("[effects.radial_force]", late))
 }
 
+/// Wrong: a user whose loads come up from zero would be told to lock the shaft, and not how to start without load.
+#[test]
+fn a_motion_without_load_at_the_start_says_how_it_can_start() {
+    let ramp = "schedule.ramp = { start = \"0 ms\", duration = \"0.1 ms\" }";
+    let text = late_force().text("scene.toml");
+    let text = text.replace("schedule.step = { at = \"0.1 ms\" }", ramp);
+    let dir =
+        Dir::with_scene(&text.replace("[effects.axial_force]", &format!("[effects.axial_force]\n{ramp}")));
+    let run = |out: &str, sets: &[&str]| {
+        let sets = [&["--set", "shaft.mass=0.5 kg"], sets].concat();
+        dir.raceway(&[&["run", "scene.toml", "--out", out][..], &RIGID[..], &sets[..]].concat())
+    };
+    let said = run("out", &[]);
+    assert_eq!(said.code, Some(2), "{}", said.stderr);
+    for part in ["[dynamic.start.free]", "is free but nothing resists it"] {
+        assert!(said.stderr.contains(part), "{part}: {}", said.stderr);
+    }
+    let said = run("free", &["--set", "dynamic.start.free={}"]);
+    assert_eq!(said.code, Some(0), "{}", said.stderr);
+}
+
 /// If this failed, a load would act at another time than its schedule says, or with another size: until its time
 /// nothing moves, and then its work is the force times the way of the shaft.
 #[test]

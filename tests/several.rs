@@ -335,7 +335,7 @@ fn check_stiffness_and_campbell_take_a_list() {
     }
 }
 
-/// Wrong: soft preload would depend on the shaft, or press the wrong way.
+/// Wrong: soft preload would depend on the shaft, or press the wrong way; or the ring slide the wrong way in a table.
 #[test]
 fn a_spring_presses_the_sliding_ring_with_its_force() {
     let dir = with_type();
@@ -346,6 +346,13 @@ fn a_spring_presses_the_sliding_ring_with_its_force() {
     let force = |bearing: &str| number(&found, &format!("/bearings/{bearing}/force_on_shaft_n/2"));
     assert_close("rear", force("rear"), 500.0, 1e-8);
     assert_close("front", force("front"), -700.0, 1e-8);
+    // Seats stand in the shaft's frame as all of their table, and in that of the bearing in its own.
+    let of_all = dir.text("out/bearings.csv");
+    let rear = of_all.lines().find(|line| line.contains(",rear,")).unwrap();
+    let of_all: f64 = rear.rsplit(',').next().unwrap().parse().unwrap();
+    let own = Table::read(&dir, "out/rear/shaft.csv").column("outer_seat_z_m")[0];
+    assert!(own < -1e-6, "{own}");
+    assert_close("seat", of_all, -own, 1e-12);
 }
 
 /// A pair that gets a load across while it speeds up, in steps of 10 us.

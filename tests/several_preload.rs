@@ -108,3 +108,61 @@ fn bearings_press_on_their_other_shoulders_as_well() {
         [0.0]
     );
 }
+
+/// A 7206B of dimensions between round numbers, whose balls round-off presses where they just touch.
+const STEEP: &str = r#"
+[bearing]
+balls = 13
+ball_diameter = "9.525 mm"
+pitch_diameter = "46 mm"
+contact_angle = "40 deg"
+inner_curvature_ratio = 0.515
+outer_curvature_ratio = 0.525
+bore_diameter = "30 mm"
+outside_diameter = "62 mm"
+width = "16 mm"
+
+[materials]
+rings = "bearing steel"
+balls = "bearing steel"
+
+[contact]
+mode = "rigid"
+
+[inner]
+flexible = false
+
+[outer]
+flexible = false
+"#;
+
+/// Wrong: pairs that begin where their balls just touch, without an offset, would have no solution where round-off
+/// presses those balls by 1e-17 m: about one of three. Their stiffness as well.
+#[test]
+fn a_pair_whose_balls_round_off_presses_is_solved() {
+    let dir = with_type();
+    dir.write("types/kind.toml", STEEP);
+    let free = unloaded("spring = \"420 N\"\nsliding = \"rear\"").replace("locked", "free");
+    dir.write("spring.toml", format!("{free}[static]\n"));
+    let (bearings, _) = free.split_once("[pairing]").unwrap();
+    let (_, shaft) = free.split_once("[shaft]").unwrap();
+    let load = "[effects.axial_force]\nvalue = \"420 N\"\n\n[static]\n";
+    dir.write("load.toml", format!("{bearings}[shaft]{shaft}{load}"));
+    for (name, carrying) in [("spring", 2), ("load", 1)] {
+        succeeds(&dir, &["run", &format!("{name}.toml"), "--out", name]);
+        let balls = |bearing: &str| {
+            let table = Table::read(&dir, &format!("{name}/{bearing}/balls.csv"));
+            let force = table.column("inner_force_n");
+            let angle = table.column("inner_contact_angle_rad");
+            force.iter().zip(&angle).map(|(q, a)| q * a.sin()).sum::<f64>()
+        };
+        let pressed = [balls("front"), balls("rear")];
+        for (bearing, along) in pressed.into_iter().take(carrying).enumerate() {
+            assert_close(&format!("{name}, bearing {bearing}"), along, 420.0, 1e-8);
+        }
+    }
+    let held = shaft.replace("\"free\"", "\"locked\"");
+    let one = bearings.split("[[bearing]]").nth(1).unwrap();
+    dir.write("held.toml", format!("[[bearing]]{one}\n[shaft]{held}[static]\n"));
+    succeeds(&dir, &["stiffness", "held.toml", "--out", "k"]);
+}

@@ -13,9 +13,9 @@
 
 use contact::Side;
 use dynamics::Model;
-use dynamics::effects::rules::{Case, MATTERS, percent};
+use dynamics::effects::rules::{Case, MATTERS, PeakLoad, percent};
 use results::failure::Failure;
-use scene::{Analysis, Scene, ShaftMotion, material, speeds};
+use scene::{Analysis, Scene, Shaft, ShaftMotion, material, speeds};
 
 use crate::bodies::orders_of_seats;
 use crate::periodic_gain;
@@ -27,7 +27,7 @@ pub fn advice(scene: &Scene, model: &Model) -> Result<Vec<String>, Failure> {
     let [inner, _] = speeds.at_largest(|[inner, _]| inner.abs());
     let case = Case {
         model,
-        load: effects.peak_load(inner),
+        load: on_balls(&scene.shaft, effects.peak_load(inner)),
         speeds,
         slip: effects.slip(),
         ring_steel: material(&scene.materials.rings)?,
@@ -47,6 +47,24 @@ pub fn advice(scene: &Scene, model: &Model) -> Result<Vec<String>, Failure> {
     lines.extend(periodic_gain::advice(scene, model));
     lines.extend(orders_of_seats(scene, model));
     Ok(lines)
+}
+
+/// The part of loads on the shaft that balls carry: none of those along axes in which the shaft is held.
+fn on_balls(shaft: &Shaft, load: PeakLoad) -> PeakLoad {
+    let is_held = |motions: &[ShaftMotion]| motions.iter().all(|motion| *motion != ShaftMotion::Free);
+    PeakLoad {
+        axial: if is_held(&[shaft.z]) {
+            load.spring
+        } else {
+            load.axial
+        },
+        radial: if is_held(&[shaft.x, shaft.y]) {
+            0.0
+        } else {
+            load.radial
+        },
+        ..load
+    }
 }
 
 /// Play in which balls cannot be told from balls that just touch, m: a thousandth of what micrometers show.

@@ -3,7 +3,7 @@
 
 use contact::Side;
 use dynamics::motion::{EquilibriumRates, Motion, MotionState};
-use dynamics::{Model, RingMemory, StaticSolution, StaticSolver};
+use dynamics::{DynamicsError, Model, RingMemory, StaticSolution, StaticSolver};
 use results::failure::Failure;
 use scene::{Dynamic, Scene, Start, rolling};
 use timer::Laps;
@@ -34,7 +34,7 @@ pub fn settle(
     }
     progress.stage("static start");
     let mut statics = StaticSolver::new(model).map_err(Failure::solving)?;
-    let equilibrium = statics.solve(model, None).map_err(Failure::solving)?;
+    let equilibrium = statics.solve(model, None).map_err(at_the_start)?;
     let rates = rolling(scene)
         .filter(|_| dynamic.start == Start::Rolling)
         .map(|rolling| EquilibriumRates::find(&mut statics, (model, &rolling), &equilibrium))
@@ -46,6 +46,18 @@ pub fn settle(
         forecast: Side::BOTH.map(|side| statics.ring(side).map(|r| r.solver.memory)),
         timing: statics.timing,
     })
+}
+
+/// The failure of an equilibrium from which a motion should start.
+fn at_the_start(error: DynamicsError) -> Failure {
+    let is_unheld = matches!(error, DynamicsError::Unheld { .. });
+    let failure = Failure::solving(error);
+    if is_unheld {
+        let start = "a motion starts from its equilibrium under the loads of t = 0, where schedules may be 0; with \
+                     [dynamic.start.free] it starts from rest without one";
+        return failure.context(start.to_string());
+    }
+    failure
 }
 
 impl Settled {

@@ -12,6 +12,9 @@ use std::ops::Range;
 
 use dense::{BlockLu, DenseError, DenseLu};
 
+/// Least share of a diagonal that [`hold_sliding`] leaves to a pivot, over that of a singular one.
+const SAFETY: f64 = 16.0;
+
 /// How the rows that are condensed out of a matrix follow the others.
 pub struct Condensation {
     n: usize,
@@ -102,6 +105,22 @@ pub fn condensed<const N: usize>(
     Ok(found)
 }
 
+/// Holds the two rows i and i + 1 of a matrix of `n` rows, row-major, where they all but slide in one direction: by as
+/// much as a factorisation asks for, which is round-off beside their stiffness in the other.
+///
+/// So are the rows of a ball that just touches both raceways. Round-off presses it by about 1e-17 m: the slopes of its
+/// contacts hold it along their normal, but across it there is nothing but Q/|l| of forces of some 1e-15 N.
+pub fn hold_sliding(n: usize, i: usize, matrix: &mut [f64]) {
+    let at = |row: usize, column: usize| matrix[n * row + column];
+    let (sum, product) = (at(i, i) + at(i + 1, i + 1), at(i, i) * at(i + 1, i + 1));
+    let least = SAFETY * n as f64 * f64::EPSILON;
+    if (product - at(i, i + 1) * at(i + 1, i)).abs() < least * sum * sum {
+        for row in [i, i + 1] {
+            matrix[n * row + row] += least * sum.abs();
+        }
+    }
+}
+
 fn product(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
@@ -109,6 +128,37 @@ fn product(a: &[f64], b: &[f64]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// Wrong: a ball between contacts that round-off presses would stop the solution of its bearing, or one that
+    /// carries would be held. It slides across two springs in line; what the other end of one feels is both in series.
+    #[test]
+    fn rows_that_all_but_slide_are_held_and_others_keep_their_bits() {
+        let (a, b, n) = (3.0, 7.0, 3);
+        let [c, s] = [0.8, 0.6];
+        let of = |across: f64| -> Vec<f64> {
+            let block = |normal: f64, side: f64| (a + b) * normal + across * side;
+            vec![
+                a,
+                -a * c,
+                -a * s,
+                -a * c,
+                block(c * c, s * s),
+                block(c * s, -c * s),
+                -a * s,
+                block(c * s, -c * s),
+                block(s * s, c * c),
+            ]
+        };
+        for across in [0.0, 1e-17, -1e-17] {
+            let mut matrix = of(across);
+            hold_sliding(n, 1, &mut matrix);
+            let found = Condensation::new(n, 1, &matrix).unwrap().apply(&matrix)[0];
+            assert!((found - a * b / (a + b)).abs() < 1e-12, "{across}: {found}");
+        }
+        let mut matrix = of(1e-9);
+        hold_sliding(n, 1, &mut matrix);
+        assert_eq!(matrix, of(1e-9));
+    }
 
     /// Wrong: the rest would not follow without force, or an unsymmetric matrix would be taken for a symmetric one.
     /// Two springs in series, one of which answers with twice its force.

@@ -36,7 +36,7 @@ use timer::SharedLaps;
 
 use crate::bearing::{BearingParts, CONTACTS, lengths};
 use crate::compliance;
-use crate::condensation::Condensation;
+use crate::condensation::{Condensation, hold_sliding};
 use crate::effects::{Loads, Now, RingDamping};
 use crate::error::DynamicsError;
 use crate::interactions::closing_contact::ClosingContact;
@@ -284,16 +284,20 @@ fn ports_of(parts: &BearingParts) -> [Option<RingPorts>; 2] {
     })
 }
 
-/// Holds balls that nothing touches: they have no stiffness, and pass nothing on.
+/// Holds balls that nothing touches, which have no stiffness and pass nothing on, and balls that no more than round-off
+/// presses.
 fn hold_unloaded(parts: &BearingParts, n: usize, stiffness: &mut [f64]) {
     let scale = stiffness
         .iter()
         .fold(f64::MIN_POSITIVE, |most, k| most.max(k.abs()));
     let balls = N_SHAFT..N_SHAFT + 2 * parts.balls.len();
-    for i in balls {
+    for i in balls.clone() {
         if stiffness[n * i..n * (i + 1)].iter().all(|k| *k == 0.0) {
             stiffness[n * i + i] = scale;
         }
+    }
+    for i in balls.step_by(2) {
+        hold_sliding(n, i, stiffness);
     }
 }
 

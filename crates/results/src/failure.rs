@@ -28,7 +28,7 @@ pub enum Failure {
 fn one_line(error: &anyhow::Error) -> String {
     let mut text = error.to_string();
     for cause in error.chain().skip(1).map(ToString::to_string) {
-        if !text.ends_with(&cause) {
+        if !text.contains(&cause) {
             text = format!("{text}: {cause}");
         }
     }
@@ -151,5 +151,23 @@ impl Coded {
 impl<E: Into<anyhow::Error>> From<E> for Failure {
     fn from(error: E) -> Failure {
         Failure::User(error.into())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Wrong: a message that goes on after its cause, with what to do, would say the cause a second time.
+    #[test]
+    fn a_cause_in_the_middle_of_a_message_is_said_once() {
+        let error = anyhow!("a row is empty").context("no solution: a row is empty; check the loads");
+        let failure = Failure::Numerical(error).context("bearing \"a\"".to_string());
+        assert_eq!(
+            failure.text(),
+            "bearing \"a\": no solution: a row is empty; check the loads"
+        );
+        let failure = Failure::User(anyhow!("no such file").context("cannot read it"));
+        assert_eq!(failure.text(), "cannot read it: no such file");
     }
 }

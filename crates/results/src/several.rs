@@ -290,7 +290,7 @@ pub struct StateOnShaft {
     is_on_body: bool,
     /// Force, N, and moment, N m, by which it pushes the shaft at its place.
     pub force: [f64; N_SHAFT],
-    /// Displacement of the outer ring's seat along its own z, m.
+    /// Displacement of the outer ring's seat along the shaft's z, m.
     pub seat: f64,
     /// Largest force on the inner raceway, N.
     pub largest_ball_force: f64,
@@ -306,13 +306,15 @@ impl StateOnShaft {
         force: [f64; N_SHAFT],
         (balls, seat): (Vec<BallResult>, f64),
     ) -> StateOnShaft {
-        let station = assembly.shaft.station(assembly.bearings[number].place.position);
+        let place = &assembly.bearings[number].place;
+        let station = assembly.shaft.station(place.position);
+        let along_shaft = |own: f64| place.orientation.turned_vector([0.0, 0.0, own])[2] + 0.0;
         let largest = balls.iter().fold(0.0f64, |m, b| m.max(b.inner.force_n));
         StateOnShaft {
             displacement: station.displacement(shaft),
             is_on_body: false,
             force: force.map(|f| f + 0.0),
-            seat,
+            seat: along_shaft(seat),
             largest_ball_force: largest,
             loaded_balls: balls
                 .iter()
