@@ -6,7 +6,7 @@
 //! pass shrinks the change by (change of the loads) / (change of the contact forces), below 0.4 for the gyroscopic
 //! moment with the centrifugal force of the balls, even on balls that have left the inner raceway. Where it does not
 //! shrink so fast, as for the moment of a fast bearing alone under a small load, where full steps go back and forth
-//! for ever, passes are mixed ([`crate::relaxation`]).
+//! for ever, passes are mixed (module `relaxation`).
 
 use contact::{Meridian, Side};
 use ring::RingModel;
