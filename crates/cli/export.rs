@@ -113,20 +113,19 @@ pub fn export(request: &Export) -> Result<(), Failure> {
     let grid = read_mesh(dir)?;
     let out = request.folder();
     make_output_folder(request.out.as_deref(), &out)?;
-    require_free_files(&out, &steps, request.to)?;
-    let extension = request.to.extension();
+    require_free_steps(&out, &steps, request.to, files_of_step)?;
     let mut names = Vec::new();
     for step in steps {
         let record = read_any_step(dir, step)?;
         require_same_mesh(&grid, &record)?;
-        let name = format!("step_{step:06}.{extension}");
+        let name = fields_file(step, request.to);
         let write = match request.to {
             ExportForm::Csv => csv::write,
             ExportForm::Vtu => vtu::write,
         };
         write_new(&out.join(&name), |file| write(file, &grid, &record))?;
         if let (ExportForm::Csv, Some(stress)) = (request.to, &record.cells.stress_integration_points) {
-            let path = out.join(format!("step_{step:06}_integration_points.csv"));
+            let path = out.join(stress_file(step));
             write_new(&path, |file| integration_points::write(file, &grid, stress))?;
         }
         names.push((name, record.time));
@@ -138,16 +137,30 @@ pub fn export(request: &Export) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Fails if anything would be written over, before the first file is.
-fn require_free_files(out: &Path, steps: &[u64], form: ExportForm) -> Result<(), Failure> {
-    let of_step = |step: &u64| match form {
-        ExportForm::Csv => vec![
-            format!("step_{step:06}.csv"),
-            format!("step_{step:06}_integration_points.csv"),
-        ],
-        ExportForm::Vtu => vec![format!("step_{step:06}.vtu")],
-    };
-    let mut names: Vec<String> = steps.iter().flat_map(of_step).collect();
+fn fields_file(step: u64, form: ExportForm) -> String {
+    format!("step_{step:06}.{}", form.extension())
+}
+
+/// As tables stress at integration points has one of its own.
+fn stress_file(step: u64) -> String {
+    format!("step_{step:06}_integration_points.csv")
+}
+
+fn files_of_step(step: u64, form: ExportForm) -> Vec<String> {
+    match form {
+        ExportForm::Csv => vec![fields_file(step, form), stress_file(step)],
+        ExportForm::Vtu => vec![fields_file(step, form)],
+    }
+}
+
+/// Fails if anything would be written over, before the first file is: what `of_step` names of each step, and the times.
+pub fn require_free_steps(
+    out: &Path,
+    steps: &[u64],
+    form: ExportForm,
+    of_step: impl Fn(u64, ExportForm) -> Vec<String>,
+) -> Result<(), Failure> {
+    let mut names: Vec<String> = steps.iter().flat_map(|&step| of_step(step, form)).collect();
     if form == ExportForm::Vtu {
         names.push(TIMES.to_string());
     }

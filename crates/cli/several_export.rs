@@ -11,9 +11,9 @@ use results::export::list::{BearingBodies, Owner, ShownGrid, ShownList};
 use results::export::multiblock::{self, DataBlock};
 use results::export::{csv, integration_points, vtu};
 use results::failure::Failure;
-use results::whole::{make_folder, make_output_folder, require_free, write_new};
+use results::whole::{make_folder, make_output_folder, write_new};
 
-use crate::export::{Export, ExportForm, TIMES, require_same_mesh};
+use crate::export::{Export, ExportForm, TIMES, require_free_steps, require_same_mesh};
 
 /// Writes the steps asked for; existing files are not touched.
 pub fn export(request: &Export) -> Result<(), Failure> {
@@ -33,7 +33,7 @@ pub fn export(request: &Export) -> Result<(), Failure> {
     }
     let out = request.folder();
     make_output_folder(request.out.as_deref(), &out)?;
-    require_free_steps(&out, &steps, request.to)?;
+    require_free_steps(&out, &steps, request.to, files_of_step)?;
     let mut names = Vec::new();
     for step in steps {
         let mut records = Vec::new();
@@ -102,20 +102,13 @@ fn common_steps(folders: &[(String, PathBuf)], request: &Export) -> Result<Vec<u
     .into())
 }
 
-/// Fails if anything would be written over, before the first file is.
-fn require_free_steps(out: &Path, steps: &[u64], form: ExportForm) -> Result<(), Failure> {
-    let mut names = Vec::new();
-    for step in steps {
-        names.push(format!("step_{step:06}"));
-        if form == ExportForm::Vtu {
-            names.push(format!("step_{step:06}.vtm"));
-        }
+/// What is written of a step: a folder of its parts, and in VTK's formats the file that names them.
+fn files_of_step(step: u64, form: ExportForm) -> Vec<String> {
+    let folder = format!("step_{step:06}");
+    match form {
+        ExportForm::Csv => vec![folder],
+        ExportForm::Vtu => vec![folder.clone(), format!("{folder}.vtm")],
     }
-    if form == ExportForm::Vtu {
-        names.push(TIMES.to_string());
-    }
-    let names: Vec<&str> = names.iter().map(String::as_str).collect();
-    Ok(require_free(out, &names)?)
 }
 
 /// The files of a step.

@@ -5,6 +5,7 @@ use std::path::Path;
 use assembly::{Assembly, AssemblyError, AssemblyMotion};
 use contact::Side;
 use dynamics::effects::Now;
+use dynamics::stiffness::N_SHAFT;
 use results::disk::Forecast;
 use results::failure::Failure;
 use scene::{Dynamic, SeveralScene, loads_on_shaft, settings};
@@ -27,8 +28,7 @@ pub fn require_space(
 pub fn forecast(scene: &SeveralScene, assembly: &Assembly, done: u64) -> Forecast {
     let bearings = scene.bearings.iter().zip(&assembly.bearings);
     let each = bearings.map(|(bearing, mounted)| Forecast::new(&bearing.scene, &mounted.model, done));
-    // Five dofs at each place along a beam.
-    let n_places = (assembly.shaft.n() / 5).max(1) as u64;
+    let n_places = (assembly.shaft.n() / N_SHAFT).max(1) as u64;
     Forecast::of_all(&each.collect::<Vec<_>>(), n_places)
 }
 

@@ -39,14 +39,12 @@ struct LoadPass {
 impl Relaxation {
     /// Puts the loads of the next pass in the place of `new`, which one that began with `old` gave.
     pub fn mix(&mut self, old: &Loads, new: &mut Loads) {
-        let change: Vec<f64> = following(old)
-            .iter()
-            .zip(following(new))
-            .flat_map(|(a, b)| [b.radial - a.radial, b.axial - a.axial])
-            .collect();
+        let (from, given) = (numbers(old), numbers(new));
+        let n_forces = 2 * (new.contacts.len() + new.balls.len());
+        let change = given.iter().zip(&from).take(n_forces);
         let pass = LoadPass {
-            given: numbers(new),
-            change,
+            change: change.map(|(to, from)| to - from).collect(),
+            given,
         };
         if let Some(last) = &self.last {
             let [before, now] = [&last.change, &pass.change].map(|change| dot(change, change));
@@ -60,8 +58,7 @@ impl Relaxation {
             }
         }
         if self.mixes {
-            let mixed = self.mixed(&pass, &numbers(old));
-            set_numbers(new, &mixed);
+            set_numbers(new, &self.mixed(&pass, &from));
         }
         self.last = Some(pass);
     }

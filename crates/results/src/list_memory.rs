@@ -16,7 +16,7 @@ use scene::{Analysis, Modes, Scene};
 use crate::failure::Failure;
 use crate::memory::{
     Bound, MOST_PER_NODE, bound, bytes_of_points, queued_steps, reduction_memory, require, rings_at_once,
-    rings_of, tied_bytes, with_bodies, with_reduction, written_bytes,
+    rings_of, searched_bytes, tied_bytes, with_bodies, with_reduction, written_bytes,
 };
 
 /// Files and tables of a bearing after the first, bytes, measured on rigid rings.
@@ -175,7 +175,7 @@ pub fn forecast_modes_of_list(wanted: &Modes, bearings: &[BearingMemory<'_>]) ->
             let (Some(ring), Some(memory)) = (ring, memory) else {
                 continue;
             };
-            sum += memory.kept + memory.assembly + memory.results;
+            sum += searched_bytes(*memory);
             // Bearings of one type share their mesh.
             if !meshes.iter().any(|other| Arc::ptr_eq(other, ring)) {
                 meshes.push(ring);

@@ -173,10 +173,7 @@ fn forecast_modes(wanted: &Modes, (scene, model): (&Scene, &Model), rings: [Opti
         let matrices = sides.iter().filter_map(|side| rings[side.index()]);
         let n_dofs = |side: &Side| model.ring(*side).map_or(0, |ring| ring.mesh.n_dofs());
         let vectors = size_of::<f64>() * n_vectors * sides.iter().map(n_dofs).sum::<usize>();
-        vectors
-            + matrices
-                .map(|ring| ring.kept + ring.assembly + ring.results)
-                .sum::<usize>()
+        vectors + matrices.map(searched_bytes).sum::<usize>()
     };
     let of_body = |body: &ModeBody| match body {
         ModeBody::Inner => of_rings(&Side::BOTH[..1], 2 * alone),
@@ -190,6 +187,11 @@ fn forecast_modes(wanted: &Modes, (scene, model): (&Scene, &Model), rings: [Opti
         forecast_peak([None, None], 1) + meshes + search + written,
         [model],
     )
+}
+
+/// Factor, stiffness and mass of a ring in the search for modes, and what is written of it, bytes.
+pub(crate) fn searched_bytes(ring: RingMemory) -> usize {
+    ring.kept + ring.assembly + ring.results
 }
 
 /// Copies of a block of vectors that a ring in a body takes at a time, beside those of all rings, measured.
