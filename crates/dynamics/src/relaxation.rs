@@ -37,8 +37,12 @@ struct LoadPass {
 }
 
 impl Relaxation {
-    /// Puts the loads of the next pass in the place of `new`, which one that began with `old` gave.
+    /// Puts the loads of the next pass in the place of `new`, which one that began with `old` gave. A first pass that
+    /// began without any loads at contacts tells nothing of how they bend.
     pub fn mix(&mut self, old: &Loads, new: &mut Loads) {
+        if old.contacts.len() != new.contacts.len() {
+            return;
+        }
         let (from, given) = (numbers(old), numbers(new));
         let n_forces = 2 * (new.contacts.len() + new.balls.len());
         let change = given.iter().zip(&from).take(n_forces);
@@ -160,6 +164,22 @@ mod tests {
             loads = next;
         }
         panic!("{shares:?}: {:?}", loads.balls);
+    }
+
+    /// Wrong: where only the second pass has loads at contacts, its numbers would be set against others of the first:
+    /// slopes against forces.
+    #[test]
+    fn passes_with_and_without_loads_at_contacts_are_not_compared() {
+        let mut relaxation = Relaxation::default();
+        let given = Loads {
+            contacts: vec![Meridian::from([1.0, 2.0]); 4],
+            ..Loads::none(2)
+        };
+        let mut next = given.clone();
+        relaxation.mix(&Loads::none(2), &mut next);
+        assert!(next == given && relaxation.last.is_none());
+        relaxation.mix(&given, &mut next);
+        assert!(relaxation.last.is_some_and(|pass| pass.change == [0.0; 12]));
     }
 
     /// Wrong: a ball whose load goes back and forth would keep all others from settling, which creep by small shares.
