@@ -156,6 +156,7 @@ impl Rod {
             reach: [0.0, touching - self.gap].into(),
             touching,
             lever: 0.0,
+            is_projected: true,
             law,
             across: Default::default(),
             unevenness: None,

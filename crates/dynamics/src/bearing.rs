@@ -17,7 +17,7 @@ use crate::interactions::free_contact::{Carrier, FreeContacts};
 use crate::interactions::raceway_contact::{GrooveBodies, Means, RacewayContacts, Site, SiteState};
 use crate::interactions::seat_spring::{Seat, SeatSpring};
 use crate::model::Model;
-use crate::system::{ElasticPorts, Interaction, Interval, Lengths, Lumped, System};
+use crate::system::{CarriedCircle, ElasticPorts, Interaction, Interval, Lengths, Lumped, System};
 
 /// Number of the shaft among the lumped bodies.
 pub const SHAFT: usize = 0;
@@ -162,7 +162,7 @@ impl BearingParts {
             let carries = elastic.is_none() || self.interval == Interval::Rest;
             GrooveBodies {
                 carrier: self.carrier(side).filter(|_| carries),
-                tilting: (side == Side::Inner && self.tilts()).then_some(SHAFT),
+                finite: (side == Side::Inner && self.bends()).then_some(SHAFT),
                 held: match elastic {
                     Some(_) => Vec::new(),
                     None => held[side.index()].clone(),
@@ -175,12 +175,22 @@ impl BearingParts {
 
     /// Loads whose moments change with the tilt of the shaft, if it may tilt.
     pub fn tilted_loads(&self, loads: &Loads) -> Option<TiltedLoads> {
-        TiltedLoads::new(&loads.shaft, loads.lever).filter(|_| self.tilts())
+        TiltedLoads::new(&loads.shaft, loads.lever).filter(|_| self.moves(&[3, 4]))
     }
 
-    /// Whether the shaft may tilt.
-    fn tilts(&self) -> bool {
-        [3, 4].iter().any(|&dof| self.shaft.imposed[dof] != Some(0.0))
+    /// Whether the shaft may make a motion in which links to its groove are not linear.
+    fn bends(&self) -> bool {
+        let is_projected = self.contacts.sites.first().is_some_and(|site| site.is_projected);
+        self.moves(if is_projected {
+            &[3, 4]
+        } else {
+            &CarriedCircle::COORDINATES
+        })
+    }
+
+    /// Whether the shaft may move in one of these dofs.
+    fn moves(&self, dofs: &[usize]) -> bool {
+        dofs.iter().any(|&dof| self.shaft.imposed[dof] != Some(0.0))
     }
 
     /// Their system.

@@ -92,6 +92,9 @@ pub struct ContactSettings {
     pub mode: ContactMode,
     /// How small a patch may be.
     pub least_patch: LeastSize,
+    /// Whether a ball sees the point of the inner groove's circle at its azimuth, projected onto its meridian plane, as
+    /// in the methods of Jones and Harris, and not where the moved circle meets that plane.
+    pub projects_grooves: bool,
 }
 
 /// Dimensionless stopping rules.

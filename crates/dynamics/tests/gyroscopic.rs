@@ -273,13 +273,13 @@ fn friction_of_the_balls_is_balanced_by_the_shaft() {
         for (ball, b) in solution.balls.iter().enumerate() {
             let t = shares[0] * effect.moment(&model, &now, ball) / g.ball_diameter;
             let at = InnerContact::new(&model, &solution, ball);
-            // The normal force acts through the groove centre, friction at the contact, a groove radius inwards.
+            // Both forces act through the groove centre. That friction is at the contact, a groove radius inwards, is a
+            // couple about e_psi, as the gyroscopic moment is.
             let (normal, friction) = (at.normal.map(|n| b.inner.force_n * n), at.along.map(|e| t * e));
-            let contact = [0, 1, 2].map(|i| at.centre[i] + g.inner_groove_radius * at.normal[i]);
-            let parts = [cross(at.centre, normal), cross(contact, friction)];
+            let parts = [cross(at.centre, normal), cross(at.centre, friction)];
             for i in 0..3 {
                 force[i] += normal[i] + friction[i];
-                moment[i] += parts[0][i] + parts[1][i];
+                moment[i] += parts[0][i] + parts[1][i] - g.inner_groove_radius * t * at.beside[i];
             }
         }
         assert!(force.iter().all(|f| f.abs() < 2e-6), "{shares:?} {force:?}");

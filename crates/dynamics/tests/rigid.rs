@@ -152,7 +152,14 @@ fn forces_and_moments_balance() {
 /// reactions hold what balls press on the ring in space. 1e-9 of the forces.
 #[test]
 fn a_bearing_tilted_by_three_degrees_balances_where_it_stands() {
+    for projects in [false, true] {
+        tilted_by_three_degrees(projects);
+    }
+}
+
+fn tilted_by_three_degrees(projects: bool) {
     let mut model = Case::axial(2000.0).rigid();
+    model.contact.projects_grooves = projects;
     let tilt: [f64; 2] = [0.03, 0.0428];
     (model.shaft[3], model.shaft[4]) = (ShaftDof::Prescribed(tilt[0]), ShaftDof::Prescribed(tilt[1]));
     let solution = equilibrium(&model);

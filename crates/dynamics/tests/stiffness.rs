@@ -76,8 +76,12 @@ fn combined() -> Case {
 /// contacts in line, a spring of stiffness k along the line of the groove centres, of length s, and Q/s across.
 #[test]
 fn thrust_on_rigid_rings_has_its_closed_form() {
-    for axial in [200.0, 2000.0, 10_000.0] {
-        let model = Case::axial(axial).rigid();
+    for (axial, projects) in [200.0, 2000.0, 10_000.0]
+        .into_iter()
+        .flat_map(|n| [(n, false), (n, true)])
+    {
+        let mut model = Case::axial(axial).rigid();
+        model.contact.projects_grooves = projects;
         let (found, solution) = linear(&model);
         let g = &model.geometry;
         let (z, lever) = (g.n_balls as f64, g.centre_radius(contact::Side::Inner));
@@ -87,9 +91,11 @@ fn thrust_on_rigid_rings_has_its_closed_form() {
         let (q, k) = (ball.force_n, 1.5 * ball.force_n.cbrt() / series);
         let length = g.groove_distance() + q.powf(2.0 / 3.0) * series;
         let across = q / length;
-        let radial = k * cos * cos + across * sin * sin;
+        // A circle that moves across has points that move inwards, and one that tilts as well has others.
+        let bent = if projects { 0.0 } else { q };
+        let radial = k * cos * cos + across * sin * sin - bent * cos / lever;
         let axial = k * sin * sin + across * cos * cos;
-        let coupling = (k - across) * sin * cos;
+        let coupling = (k - across) * sin * cos - bent * sin / lever;
         // A tilt of the circle of groove centres takes its points inwards, where the balls press them.
         let tilt = lever * (lever * axial - q * cos);
         let half = 0.5 * z;

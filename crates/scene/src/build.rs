@@ -187,6 +187,7 @@ fn contact_settings(
             spacings: scene.contact.patch_elements,
             rolling: patch_length,
         },
+        projects_grooves: scene.contact.groove_circle == tables::SeenGroove::Projected,
     }
 }
 

@@ -38,6 +38,7 @@ impl Site {
         Circle {
             azimuth: [cos, sin],
             radius: self.lever,
+            is_projected: self.is_projected,
         }
     }
 }

@@ -41,6 +41,8 @@ pub struct Site {
     pub touching: f64,
     /// Radius of the groove centre from the axis: the lever of what carries a ring, m.
     pub lever: f64,
+    /// Whether the ball sees the point of the groove circle at its azimuth, see [`crate::system::Circle`].
+    pub is_projected: bool,
     /// Force law.
     pub law: ContactLaw,
     /// By how much it yields under the force of the ball's other contact.
@@ -92,6 +94,7 @@ impl Site {
             reach: model.reach(mounting, side, None),
             touching: model.touching_distance(mounting, side, ball),
             lever: model.geometry.centre_radius(side),
+            is_projected: model.contact.projects_grooves,
             law: ContactLaw {
                 stiffness: model.hertz[side.index()].stiffness,
                 patch_compliance: 0.0,
@@ -139,7 +142,10 @@ impl Site {
         if self.side == Side::Outer {
             return l;
         }
-        let more = Meridian::from(self.circle().lengths([shaft[3], shaft[4]]));
+        let more = Meridian::from(
+            self.circle()
+                .lengths(CarriedCircle::COORDINATES.map(|k| shaft[k])),
+        );
         let by_dof = self.carrier_rows().into_iter().zip(shaft);
         let of_shaft = by_dof.map(|(row, q)| row.map(|r| r * q)).reduce(|a, b| a + b);
         l + (more - of_shaft.unwrap_or_default())
@@ -283,8 +289,8 @@ pub struct GrooveBodies {
     pub elastic: Option<usize>,
     /// The lumped body that carries the ring, where its motion is not in that of the ports.
     pub carrier: Option<usize>,
-    /// The lumped body with which the groove tilts, if it may: that is finite.
-    pub tilting: Option<usize>,
+    /// The lumped body with which the groove moves across the axis or tilts, if it may: that is finite.
+    pub finite: Option<usize>,
     /// Motion of the groove centres that stays, m, by ball; empty is none.
     pub held: Vec<Meridian>,
 }
@@ -418,7 +424,7 @@ fn link(sites: &BallSites, ball: usize, rings: &[GrooveBodies; 2]) -> Link {
         let first = of_side(first.radial, first.axial);
         reach.iter_mut().zip(first).for_each(|(sum, r)| *sum += r);
     }
-    let finite = rings[Side::Inner.index()].tilting.map(|carrier| CarriedCircle {
+    let finite = rings[Side::Inner.index()].finite.map(|carrier| CarriedCircle {
         carrier,
         circle: sites[Side::Inner.index()].circle(),
     });

@@ -89,8 +89,8 @@ impl VibratingLinks<'_> {
         ring.is_some_and(|ring| link.terms.iter().any(|other| other.body == BodyId::Elastic(ring)))
     }
 
-    /// What finite motions and the loads that follow them add to the stiffness of the tilts under the forces of the
-    /// links.
+    /// What finite motions and the loads that follow them add to the stiffness of what carries them under the forces
+    /// of the links.
     fn curvature(
         &self,
         links: &[Link],
@@ -112,7 +112,8 @@ impl VibratingLinks<'_> {
         }
         let [.., tilt_x, tilt_y] = self.equilibrium.displacements.shaft;
         if let Some(loads) = self.parts.shaft.tilted {
-            add(-1.0, loads.slopes([tilt_x, tilt_y]));
+            let [of_x, of_y] = loads.slopes([tilt_x, tilt_y]).map(|[x, y]| [0.0, 0.0, x, y]);
+            add(-1.0, [[0.0; N_FINITE], [0.0; N_FINITE], of_x, of_y]);
         }
         let growth = |coordinate: (BodyId, usize)| {
             let mut growth = LengthGrowth::default();

@@ -1,35 +1,45 @@
-//! The finite rotation of a circle that a body carries, as links in meridian planes see it.
+//! The finite motion of a circle that a body carries, as links in planes through the axis see it.
 //!
-//! A body displaced by d and rotated by R about its origin carries a circle of radius rho about its axis. Its point at
-//! the azimuth psi has moved by d + rho (R - 1) e_r, of which links take the components along e_r and z:
+//! A body displaced by d and rotated by R about its origin carries a circle of radius rho about its axis. A link at the
+//! azimuth psi sees the point in which the moved circle meets its half-plane. That point stands at the azimuth psi +
+//! delta of the body, and of its place links take the components along e_r and z. With the rotation vector phi = (tilt
+//! x, tilt y, 0), its parts p and q along e_r and e_psi, t = |phi|, s = sin(t)/t and c = (1 - cos t)/t^2 (Rodrigues):
 //!
 //! ```text
-//! R e_r . e_r = 1 - c t_psi^2,   R e_r . e_z = -s t_psi,    s = sin(t)/t,  c = (1 - cos t)/t^2,  t = |phi|
+//! place . e_psi = 0:   d_psi + rho c p q cos(delta) + rho (1 - c p^2) sin(delta) = 0
+//! place . e_r - rho = d_r - rho [1 - (1 - c q^2) cos(delta) - c p q sin(delta)]
+//! place . z         = d_z - rho s q cos(delta) + rho s p sin(delta)
 //! ```
 //!
-//! with the rotation vector phi = (tilt x, tilt y, 0) and its part t_psi along e_psi (Rodrigues). The part linear in
-//! phi is in the terms of a link; the rest, c rho t_psi^2 and -(s - 1) rho t_psi taken from its lengths, is here.
-//! Forces act on phi through its slopes: moments with the levers of the rotated body. What the circle's own curvature
-//! gives a point that lies beside it, d_psi^2 / (2 rho), is left out with the force across the meridian plane that
-//! would belong to it.
+//! The part linear in d and phi, (d_r, d_z - rho q), is in the terms of a link; the rest, taken from its lengths, is
+//! here. To second order it is d_psi^2/(2 rho) + rho q^2/2 and d_psi p. Of a circle that is projected, links see the
+//! point at their own azimuth of the body: delta = 0. Forces act on d and phi through its slopes: with their part
+//! across the plane, and moments with the levers of the moved body. The section of a torus about the moved circle is a
+//! circle about that point to second order: its distance from a point at l in the plane is |l| (1 - g^2/2), with the
+//! slope g of the moved circle along l, a tilt at most.
 
 use super::lumped::BodyId;
 
-/// Coordinates that the lengths depend on: both tilts.
-pub const N_FINITE: usize = 2;
+/// Coordinates that the lengths depend on: displacements across the axis, then both tilts.
+pub const N_FINITE: usize = 4;
+
+/// Values of the coordinates, m and rad.
+pub type FiniteCoordinates = [f64; N_FINITE];
 
 /// Growth of the first two lengths with each of these coordinates.
 pub type FiniteRows = [[f64; 2]; N_FINITE];
 
-/// Growth of the forces on each coordinate with each, N m, symmetric.
+/// Growth of the forces on each coordinate with each, symmetric: N/m, N/rad and N m.
 pub type Curvature = [[f64; N_FINITE]; N_FINITE];
 
 /// Gauss points of a mean over an interval; exact for slopes that are cubic in it.
 const GAUSS: [f64; 2] = [0.211_324_865_405_187_1, 0.788_675_134_594_812_9];
-/// Step of a difference quotient of slopes, rad.
+/// Step of a difference quotient of slopes, rad, and of a displacement over the radius.
 const DIFFERENCE: f64 = 1e-6;
 /// t^2 below which the functions of the angle are taken by their series.
 const SMALL: f64 = 0.25;
+/// Displacement over the radius beyond which a circle goes on straight; far beyond that of any bearing.
+const FAR: f64 = 0.5;
 
 /// A circle that a lumped body with the coordinates x, y, z, tilt x, tilt y carries.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -47,15 +57,17 @@ pub struct Circle {
     pub azimuth: [f64; 2],
     /// Radius, m.
     pub radius: f64,
+    /// Whether links see its point at their azimuth, projected onto their half-plane, and not where it meets that.
+    pub is_projected: bool,
 }
 
-/// A circle and the tilts of what carries it, rad.
+/// A circle and the motion of what carries it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FiniteMotion {
     /// The circle.
     pub circle: Circle,
-    /// The tilts.
-    pub at: [f64; N_FINITE],
+    /// The coordinates.
+    pub at: FiniteCoordinates,
 }
 
 impl FiniteMotion {
@@ -71,71 +83,193 @@ impl FiniteMotion {
 }
 
 impl CarriedCircle {
+    /// Numbers of the coordinates among those of the body.
+    pub const COORDINATES: [usize; N_FINITE] = [0, 1, 3, 4];
+
     /// The coordinates, in the order of their rows.
     pub fn coordinates(&self) -> [(BodyId, usize); N_FINITE] {
-        [3, 4].map(|k| (BodyId::Lumped(self.carrier), k))
+        CarriedCircle::COORDINATES.map(|k| (BodyId::Lumped(self.carrier), k))
+    }
+}
+
+/// Motions that matter: along e_psi, and the tilts about e_r and e_psi.
+type Local = [f64; 3];
+
+/// The point in which a moved circle meets a half-plane.
+struct Crossing {
+    radius: f64,
+    /// Tilts about e_r and e_psi.
+    tilt: [f64; 2],
+    /// t^2, then c, e = (t - sin t)/t^3 and s.
+    square: f64,
+    c: f64,
+    e: f64,
+    s: f64,
+    /// rho c p q and rho (1 - c p^2).
+    across: [f64; 2],
+    /// Cosine and sine of delta.
+    turned: [f64; 2],
+    /// Growth of the place along e_psi with delta, m; infinite where delta is 0 by definition.
+    per_angle: f64,
+    /// Whether the displacement is too large for a circle.
+    is_far: bool,
+}
+
+impl Crossing {
+    fn new(circle: &Circle, [along, p, q]: Local) -> Crossing {
+        let radius = circle.radius;
+        let square = p * p + q * q;
+        let [c, e] = angle_functions(square);
+        let across = [radius * c * p * q, radius * (1.0 - c * p * p)];
+        let [a, b] = across;
+        let whole = (a * a + b * b).max(f64::MIN_POSITIVE);
+        let far = FAR * whole.sqrt();
+        let d = along.clamp(-far, far);
+        let root = (whole - d * d).sqrt();
+        let (turned, per_angle) = match circle.is_projected {
+            true => ([1.0, 0.0], f64::INFINITY),
+            false => ([(b * root - a * d) / whole, -(a * root + b * d) / whole], root),
+        };
+        Crossing {
+            radius,
+            tilt: [p, q],
+            square,
+            c,
+            e,
+            s: 1.0 - square * e,
+            across,
+            turned,
+            per_angle,
+            is_far: d != along,
+        }
+    }
+
+    /// 1 - cos(delta), without cancellation.
+    fn versine(&self) -> f64 {
+        let [cos, sin] = self.turned;
+        sin * sin / (1.0 + cos)
+    }
+
+    /// What the lengths have beyond their linear terms.
+    fn lengths(&self) -> [f64; 2] {
+        let ([p, q], [_, sin], versine) = (self.tilt, self.turned, self.versine());
+        let bent = self.radius * self.c * q * q;
+        [
+            versine * (self.radius - bent) + bent - self.across[0] * sin,
+            -self.radius * (q * (versine * self.s + self.square * self.e) + self.s * p * sin),
+        ]
+    }
+
+    /// Growth of both with each motion.
+    fn rows(&self) -> [[f64; 2]; 3] {
+        let ([p, q], [cos, sin]) = (self.tilt, self.turned);
+        let a = self.across[0];
+        let (radius, c, s) = (self.radius, self.c, self.s);
+        let slope = 2.0 * c_slope(self.square, c, self.e);
+        let by_turn = [
+            sin * radius * (1.0 - c * q * q) - a * cos,
+            -radius * s * (q * sin + p * cos),
+        ];
+        let of_tilt = |k: usize| {
+            let (of_p, of_q) = if k == 0 { (1.0, 0.0) } else { (0.0, 1.0) };
+            let (of_c, of_s) = (slope * self.tilt[k], -(c - self.e) * self.tilt[k]);
+            let of_a = radius * (of_c * p * q + c * (of_p * q + p * of_q));
+            let of_b = -radius * (of_c * p * p + 2.0 * c * p * of_p);
+            let of_bent = radius * (of_c * q * q + 2.0 * c * q * of_q);
+            let turn = -(of_a * cos + of_b * sin) / self.per_angle;
+            let versine = self.versine();
+            let axial = q * (versine * of_s - of_s)
+                + of_q * (versine * s + self.square * self.e)
+                + (of_s * p + s * of_p) * sin;
+            [
+                of_bent * cos - of_a * sin + by_turn[0] * turn,
+                -radius * axial + by_turn[1] * turn,
+            ]
+        };
+        let along = if self.is_far { 0.0 } else { -1.0 / self.per_angle };
+        [by_turn.map(|growth| growth * along), of_tilt(0), of_tilt(1)]
     }
 }
 
 impl Circle {
     /// What the lengths from the circle [radial, axial] have beyond their linear terms, m.
-    pub fn lengths(&self, tilt: [f64; N_FINITE]) -> [f64; 2] {
-        let (across, square) = (self.across(tilt), square(tilt));
-        let [c, e] = angle_functions(square);
-        let lever = self.radius * across;
-        [c * lever * across, -square * e * lever]
+    pub fn lengths(&self, at: FiniteCoordinates) -> [f64; 2] {
+        Crossing::new(self, self.local(at)).lengths()
     }
 
-    /// Growth of both with the tilts.
-    pub fn rows(&self, tilt: [f64; N_FINITE]) -> FiniteRows {
-        let (across, square) = (self.across(tilt), square(tilt));
-        let [c, e] = angle_functions(square);
-        let lever = self.radius * across;
+    /// Growth of both with the coordinates.
+    pub fn rows(&self, at: FiniteCoordinates) -> FiniteRows {
+        let [along, p, q] = Crossing::new(self, self.local(at)).rows();
         let [cos, sin] = self.azimuth;
-        let slopes = [-sin, cos];
-        [0, 1].map(|k| {
-            let growth = 2.0 * c_slope(square, c, e) * lever * across * tilt[k];
-            [
-                2.0 * c * lever * slopes[k] + growth,
-                -self.radius * square * e * slopes[k] - (c - e) * lever * tilt[k],
-            ]
-        })
+        let both = |a: f64, b: f64| [0, 1].map(|i| a * p[i] + b * q[i]);
+        [
+            along.map(|growth| -sin * growth),
+            along.map(|growth| cos * growth),
+            both(cos, -sin),
+            both(sin, cos),
+        ]
     }
 
     /// Mean growth between two instants, with which rows times changes are the change of the lengths.
-    pub fn mean_rows(&self, start: [f64; N_FINITE], end: [f64; N_FINITE]) -> FiniteRows {
-        let between = |share: f64| self.rows([0, 1].map(|k| start[k] + share * (end[k] - start[k])));
+    pub fn mean_rows(&self, start: FiniteCoordinates, end: FiniteCoordinates) -> FiniteRows {
+        let between = |share: f64| self.rows(std::array::from_fn(|k| start[k] + share * (end[k] - start[k])));
         let [first, second] = GAUSS.map(between);
-        [0, 1].map(|k| [0, 1].map(|i| 0.5 * (first[k][i] + second[k][i])))
+        std::array::from_fn(|k| [0, 1].map(|i| 0.5 * (first[k][i] + second[k][i])))
     }
 
-    /// Growth of the forces on the tilts with the tilts when `force` acts on the lengths.
-    pub fn curvature(&self, tilt: [f64; N_FINITE], force: [f64; 2]) -> Curvature {
+    /// Growth of the forces on the coordinates with them when `force` acts on the lengths.
+    pub fn curvature(&self, at: FiniteCoordinates, force: [f64; 2]) -> Curvature {
+        let local = self.local(at);
         let column = |k: usize| {
+            let step = if k == 0 {
+                DIFFERENCE * self.radius
+            } else {
+                DIFFERENCE
+            };
             let at = |sign: f64| {
-                let mut moved = tilt;
-                moved[k] += sign * DIFFERENCE;
-                self.rows(moved)
+                let mut moved = local;
+                moved[k] += sign * step;
+                let rows = Crossing::new(self, moved).rows();
+                rows.map(|row| row[0] * force[0] + row[1] * force[1])
             };
             let (low, high) = (at(-1.0), at(1.0));
-            [0, 1].map(|i| {
-                let change = [0, 1].map(|row| high[i][row] - low[i][row]);
-                (change[0] * force[0] + change[1] * force[1]) / (2.0 * DIFFERENCE)
-            })
+            [0, 1, 2].map(|i| (high[i] - low[i]) / (2.0 * step))
         };
-        let columns = [column(0), column(1)];
-        [0, 1].map(|i| [0, 1].map(|k| 0.5 * (columns[k][i] + columns[i][k])))
+        let columns = [column(0), column(1), column(2)];
+        let value = |i: usize, k: usize| 0.5 * (columns[k][i] + columns[i][k]);
+        let directions = self.directions();
+        std::array::from_fn(|i| {
+            std::array::from_fn(|k| {
+                let mut sum = 0.0;
+                for (a, of_a) in directions[i] {
+                    for (b, of_b) in directions[k] {
+                        sum += of_a * value(a, b) * of_b;
+                    }
+                }
+                sum
+            })
+        })
     }
 
-    /// The tilt along e_psi.
-    fn across(&self, [x, y]: [f64; N_FINITE]) -> f64 {
+    /// By coordinate: the motions that it makes, and their growth with it.
+    fn directions(&self) -> [[(usize, f64); 2]; N_FINITE] {
         let [cos, sin] = self.azimuth;
-        y * cos - x * sin
+        [
+            [(0, -sin), (0, 0.0)],
+            [(0, cos), (0, 0.0)],
+            [(1, cos), (2, -sin)],
+            [(1, sin), (2, cos)],
+        ]
     }
-}
 
-fn square([x, y]: [f64; 2]) -> f64 {
-    x * x + y * y
+    fn local(&self, [x, y, tilt_x, tilt_y]: FiniteCoordinates) -> Local {
+        let [cos, sin] = self.azimuth;
+        [
+            y * cos - x * sin,
+            tilt_x * cos + tilt_y * sin,
+            tilt_y * cos - tilt_x * sin,
+        ]
+    }
 }
 
 /// c = (1 - cos t)/t^2 and e = (t - sin t)/t^3 of t^2.
@@ -166,123 +300,4 @@ fn series(n: u32, square: f64) -> f64 {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    const CIRCLE: Circle = Circle {
-        azimuth: [0.8, 0.6],
-        radius: 0.0326,
-    };
-    const TILTS: [[f64; 2]; 4] = [[1e-3, -4e-4], [0.03, -0.04], [0.3, 0.45], [0.0, 0.0]];
-
-    /// rho (R - 1) e_r by Rodrigues' formula, along e_r and z.
-    fn moved(circle: &Circle, [x, y]: [f64; 2]) -> [f64; 2] {
-        let [cos, sin] = circle.azimuth;
-        let (e, angle) = ([cos, sin, 0.0], x.hypot(y));
-        if angle == 0.0 {
-            return [0.0; 2];
-        }
-        let k = [x / angle, y / angle, 0.0];
-        let cross = |a: [f64; 3], b: [f64; 3]| {
-            [
-                a[1] * b[2] - a[2] * b[1],
-                a[2] * b[0] - a[0] * b[2],
-                a[0] * b[1] - a[1] * b[0],
-            ]
-        };
-        let (once, twice) = (cross(k, e), cross(k, cross(k, e)));
-        let change = [0, 1, 2].map(|i| angle.sin() * once[i] + (1.0 - angle.cos()) * twice[i]);
-        [
-            circle.radius * (change[0] * cos + change[1] * sin),
-            circle.radius * change[2],
-        ]
-    }
-
-    /// What the linear terms of a link say of the same motion.
-    fn linear(circle: &Circle, tilt: [f64; 2]) -> [f64; 2] {
-        [0.0, -circle.radius * circle.across(tilt)]
-    }
-
-    /// Wrong: lengths are not those from the rotated circle.
-    #[test]
-    fn lengths_are_those_of_the_rotated_circle() {
-        for tilt in TILTS {
-            let (found, exact, linear) = (CIRCLE.lengths(tilt), moved(&CIRCLE, tilt), linear(&CIRCLE, tilt));
-            for i in 0..2 {
-                assert!(
-                    (found[i] - (linear[i] - exact[i])).abs() < 2e-17,
-                    "{tilt:?}: {found:?}"
-                );
-            }
-        }
-    }
-
-    /// Wrong: forces would act at another lever than lengths grow. Difference quotients.
-    #[test]
-    fn rows_are_slopes_and_curvature_is_theirs() {
-        for tilt in TILTS {
-            let (rows, force) = (CIRCLE.rows(tilt), [-300.0, 90.0]);
-            let curvature = CIRCLE.curvature(tilt, force);
-            for k in 0..2 {
-                let (h, mut low, mut high) = (1e-5, tilt, tilt);
-                (low[k], high[k]) = (low[k] - h, high[k] + h);
-                let (a, b) = (CIRCLE.lengths(low), CIRCLE.lengths(high));
-                let (slopes, moved) = (CIRCLE.rows(low), CIRCLE.rows(high));
-                for i in 0..2 {
-                    assert!(
-                        ((b[i] - a[i]) / (2.0 * h) - rows[k][i]).abs() < 1e-11,
-                        "{tilt:?} {k} {i}"
-                    );
-                    let change: f64 = (0..2).map(|l| (moved[i][l] - slopes[i][l]) * force[l]).sum();
-                    assert!(
-                        (change / (2.0 * h) - curvature[i][k]).abs() < 1e-7,
-                        "{tilt:?} {i} {k}"
-                    );
-                }
-            }
-        }
-    }
-
-    /// Wrong: contacts would make or lose energy over a step, because forces act through other slopes than lengths
-    /// change. A step far larger than any of a motion.
-    #[test]
-    fn mean_rows_give_the_change_of_the_lengths() {
-        let (start, change) = (TILTS[1], [1e-4, -2e-4]);
-        let end = [0, 1].map(|k| start[k] + change[k]);
-        let rows = CIRCLE.mean_rows(start, end);
-        let (before, after) = (CIRCLE.lengths(start), CIRCLE.lengths(end));
-        for i in 0..2 {
-            let grown: f64 = (0..2).map(|k| rows[k][i] * change[k]).sum();
-            assert!(
-                (grown - (after[i] - before[i])).abs() < 1e-13 * grown.abs(),
-                "{grown}"
-            );
-        }
-    }
-
-    /// Wrong: a contact would feel where it stands round the bearing. Everything turned about the axis.
-    #[test]
-    fn turning_everything_about_the_axis_changes_nothing() {
-        for tilt in TILTS {
-            let (sin, cos) = 1.1f64.sin_cos();
-            let turn = |[x, y]: [f64; 2]| [cos * x - sin * y, sin * x + cos * y];
-            let circle = Circle {
-                azimuth: turn(CIRCLE.azimuth),
-                ..CIRCLE
-            };
-            let (found, turned) = (CIRCLE.lengths(tilt), circle.lengths(turn(tilt)));
-            (0..2).for_each(|i| assert!((turned[i] - found[i]).abs() <= 1e-14 * found[i].abs()));
-        }
-    }
-
-    /// Wrong: the functions of the angle jump where their series end.
-    #[test]
-    fn series_and_closed_forms_meet() {
-        let (below, above) = (angle_functions(SMALL * (1.0 - 1e-15)), angle_functions(SMALL));
-        (0..2).for_each(|i| assert!((below[i] - above[i]).abs() < 2e-15, "{below:?} {above:?}"));
-        let [c, e] = above;
-        let slopes = [SMALL * (1.0 - 1e-15), SMALL].map(|square| c_slope(square, c, e));
-        assert!((slopes[0] - slopes[1]).abs() < 1e-13, "{slopes:?}");
-        assert_eq!(angle_functions(0.0), [0.5, 1.0 / 6.0]);
-    }
-}
+mod tests;

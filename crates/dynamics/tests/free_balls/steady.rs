@@ -203,6 +203,7 @@ fn the_cage_pushes_balls_that_drag_would_stop() {
         }));
         model.effects.push(Box::new(BallDrag { pressure: 5.0 }));
         model.shaft[3..].fill(ShaftDof::Prescribed(0.0));
+        model.contact.projects_grooves = true;
         let solution = equilibrium(&model);
         let balls = &solution.balls;
         let orbit = |ball: usize| balls[ball].free.unwrap().orbit_rad_per_s;

@@ -54,6 +54,61 @@ pub fn on_tilts(tilt: [f64; 2], m: [f64; 3]) -> [f64; 2] {
     })
 }
 
+/// What a ball sees of the circle of groove centres of a ring that has moved.
+pub struct SeenCircle {
+    /// From the ring's origin to the point that it sees, m, in space.
+    pub arm: [f64; 3],
+    /// Unit tangent of the circle there; None of a point of the ring that is projected.
+    tangent: Option<[f64; 3]>,
+    /// Direction in which the ball's meridian plane is left.
+    beside: [f64; 3],
+}
+
+impl SeenCircle {
+    /// Of a circle of this radius, turned and moved, from the plane at an azimuth, by Newton's method round the circle;
+    /// or the point at that azimuth of the ring.
+    pub fn new(
+        turned: &[[f64; 3]; 3],
+        moved: [f64; 3],
+        radius: f64,
+        azimuth: f64,
+        projected: bool,
+    ) -> SeenCircle {
+        let (sin, cos) = azimuth.sin_cos();
+        let beside = [-sin, cos, 0.0];
+        let mut angle = azimuth;
+        let at = |angle: f64| {
+            let (sin, cos) = angle.sin_cos();
+            let arm = times(turned, [radius * cos, radius * sin, 0.0]);
+            (arm, times(turned, [-sin, cos, 0.0]))
+        };
+        for _ in 0..6 * usize::from(!projected) {
+            let (arm, tangent) = at(angle);
+            let off: f64 = (0..3).map(|i| (moved[i] + arm[i]) * beside[i]).sum();
+            angle -= off / (radius * dot(tangent, beside));
+        }
+        let (arm, tangent) = at(angle);
+        SeenCircle {
+            arm,
+            tangent: (!projected).then_some(tangent),
+            beside,
+        }
+    }
+
+    /// What a unit force along `normal` on the length from the point to the ball does on the ring: it moves the point,
+    /// and the circle slides along itself to stay in the plane.
+    pub fn on_ring(&self, normal: [f64; 3]) -> [f64; 3] {
+        let across = self
+            .tangent
+            .map_or(0.0, |tangent| dot(normal, tangent) / dot(tangent, self.beside));
+        [0, 1, 2].map(|i| normal[i] - across * self.beside[i])
+    }
+}
+
+fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
+    (0..3).map(|i| a[i] * b[i]).sum()
+}
+
 /// A contact of a ball with the inner ring, under a shaft that may tilt.
 pub struct InnerContact {
     /// From the shaft's origin to the centre of the groove at the ball, m, in space.
@@ -62,6 +117,8 @@ pub struct InnerContact {
     pub normal: [f64; 3],
     /// Direction of falling contact angle, in space.
     pub along: [f64; 3],
+    /// e_psi at the ball.
+    pub beside: [f64; 3],
 }
 
 impl InnerContact {
@@ -70,10 +127,14 @@ impl InnerContact {
         let (q, u) = (solution.displacements.shaft, solution.displacements.balls[ball]);
         let (sin, cos) = g.azimuth(ball).sin_cos();
         let (groove, place) = (g.groove_centre(Side::Inner), g.ball_centre());
-        let centre = times(
+        let seen = SeenCircle::new(
             &rotation([q[3], q[4]]),
-            [groove.radial * cos, groove.radial * sin, 0.0],
+            [q[0], q[1], q[2]],
+            groove.radial,
+            g.azimuth(ball),
+            model.contact.projects_grooves,
         );
+        let centre = seen.arm;
         let moved = [0, 1, 2].map(|i| q[i] + centre[i]);
         let l = [
             place.radial + u.radial - moved[0] * cos - moved[1] * sin,
@@ -83,8 +144,9 @@ impl InnerContact {
         let space = |v: [f64; 2]| [v[0] * cos, v[0] * sin, v[1]];
         InnerContact {
             centre,
-            normal: space([l[0] / length, l[1] / length]),
-            along: space([-l[1] / length, l[0] / length]),
+            normal: seen.on_ring(space([l[0] / length, l[1] / length])),
+            along: seen.on_ring(space([-l[1] / length, l[0] / length])),
+            beside: seen.beside,
         }
     }
 }

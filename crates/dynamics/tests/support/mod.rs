@@ -101,6 +101,7 @@ impl Case {
             contact: ContactSettings {
                 mode: ContactMode::Rigid,
                 least_patch: LEAST_PATCH,
+                projects_grooves: !self.free_tilt,
             },
             effects,
             backend: dynamics::Backend::Auto,

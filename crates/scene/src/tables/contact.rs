@@ -18,6 +18,7 @@ pub struct RawContact {
     patch_elements: Option<f64>,
     patch_length: Option<Quantity<LENGTH>>,
     pub(super) ball: Option<BallElasticity>,
+    groove_circle: Option<SeenGroove>,
     edges: Option<bool>,
 }
 
@@ -29,6 +30,16 @@ pub enum BallElasticity {
     Sphere,
     /// Nothing: Hertz's law alone.
     HalfSpace,
+}
+
+/// What a ball sees of the circle of groove centres of an inner ring that moves.
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq)]
+#[serde(rename_all = "snake_case")]
+pub enum SeenGroove {
+    /// Where the moved circle meets the ball's meridian plane: the groove is a torus.
+    Exact,
+    /// Its point at the ball's azimuth, projected onto that plane, as in the methods of Jones and Harris.
+    Projected,
 }
 
 /// How balls and raceways push on each other.
@@ -48,6 +59,9 @@ pub struct Contact {
     /// What balls yield. By default spheres, but half-spaces with rigid rings (the Jones-Harris limit), with facets
     /// (the paper's way), where a stiffness is given and where balls are free.
     pub ball: BallElasticity,
+    /// What they see of the inner groove. Projected by default where both tilts of the shaft are locked, but of free
+    /// balls.
+    pub groove_circle: SeenGroove,
     /// Whether grooves end at their shoulders.
     pub edges: bool,
 }
@@ -84,12 +98,12 @@ pub fn unusual_stiffnesses(contact: &Contact, bearing: &Bearing, materials: &Mat
 
 impl RawContact {
     /// Checks the table; bearing and materials are there when they are sound, to judge the size of a
-    /// stiffness.
+    /// stiffness. How balls move and whether both tilts of the shaft are locked decide what is usual.
     pub fn check(
         &self,
         bearing: Option<&Bearing>,
         materials: Option<&Materials>,
-        balls: BallMotion,
+        (balls, tilts_are_locked): (BallMotion, bool),
         problems: &mut Problems,
     ) -> Contact {
         if balls == BallMotion::Free && self.ball == Some(BallElasticity::Sphere) {
@@ -132,6 +146,7 @@ impl RawContact {
             _ => BallElasticity::HalfSpace,
         };
         Contact {
+            groove_circle: self.seen_groove(balls, tilts_are_locked),
             ball: self.ball.unwrap_or(usual),
             mode: self.mode,
             edges: self.edges.unwrap_or(false),
@@ -140,6 +155,14 @@ impl RawContact {
             patch_elements,
             patch_length,
         }
+    }
+
+    fn seen_groove(&self, balls: BallMotion, tilts_are_locked: bool) -> SeenGroove {
+        let usual = match tilts_are_locked && balls == BallMotion::Kinematic {
+            true => SeenGroove::Projected,
+            false => SeenGroove::Exact,
+        };
+        self.groove_circle.unwrap_or(usual)
     }
 
     /// Least semi-axis of a patch in the rolling direction, m, if it is typed.

@@ -104,7 +104,7 @@ pub use self::balls::BallMotion;
 pub use self::bearing::Bearing;
 pub use self::body::{BodySource, SceneBody};
 pub(crate) use self::contact::unusual_stiffnesses;
-pub use self::contact::{BallElasticity, Contact};
+pub use self::contact::{BallElasticity, Contact, SeenGroove};
 pub use self::difference::difference;
 pub use self::dynamic::{Dynamic, IntegratorChoice};
 pub use self::error::SceneError;
@@ -401,9 +401,12 @@ impl TextSource<'_> {
         (bearing, materials): (Option<&Bearing>, Option<&Materials>),
         problems: &mut Problems,
     ) -> (Contact, SurfaceProfiles) {
-        let mut contact = raw
-            .contact
-            .check(bearing, materials, raw.moving_balls(), problems);
+        let mut contact = raw.contact.check(
+            bearing,
+            materials,
+            (raw.moving_balls(), raw.shaft.tilts_are_locked()),
+            problems,
+        );
         let surfaces = raw.surfaces_context(bearing, self.path, self.mesh_files);
         let diameters = raw.bearing.ball_diameters.as_ref();
         let profiles = raw.profiles.check(diameters, surfaces, &mut contact, problems);

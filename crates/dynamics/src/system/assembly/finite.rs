@@ -1,6 +1,6 @@
 //! Finite motions of links in a system: their coordinates, slopes and curvature.
 
-use super::super::finite::{CarriedCircle, FiniteMotion, FiniteRows, N_FINITE};
+use super::super::finite::{CarriedCircle, FiniteCoordinates, FiniteMotion, FiniteRows};
 use super::super::interaction::{Link, LinkForces};
 use super::super::lumped::Interval;
 use super::System;
@@ -56,7 +56,11 @@ impl System<'_> {
     }
 
     /// Those of a finite motion.
-    pub(super) fn finite_coordinates(&self, finite: &CarriedCircle, coordinates: &[f64]) -> [f64; N_FINITE] {
+    pub(super) fn finite_coordinates(
+        &self,
+        finite: &CarriedCircle,
+        coordinates: &[f64],
+    ) -> FiniteCoordinates {
         finite
             .coordinates()
             .map(|(body, k)| coordinates[self.coordinate(body, k)])

@@ -82,6 +82,7 @@ fn what_is_optional_may_be_left_out() {
         "first_ball",
         "inner_stiffness",
         "outer_stiffness",
+        "groove_circle",
         "patch_elements",
         "patch_length",
         "inertia",

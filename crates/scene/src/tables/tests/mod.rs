@@ -9,6 +9,7 @@ mod cage;
 mod catalogue;
 mod effects;
 mod good;
+mod groove_circle;
 mod hollow_balls;
 mod include;
 mod life;

@@ -302,7 +302,7 @@ fn all_that_is_missing_or_unknown_is_said_at_once() {
         "  materials.rings.young_modulus: \"207 GN\" is a force; expected a stress such as \"207 GPa\" (line 18)",
         "  contact.mode is \"patsch\"; did you mean \"patch\"? valid values are \"patch\", \
          \"facet\", \"rigid\" (line 30)",
-        "  inner.section.grading: invalid type: string \"1.2\", expected a number (line 63)",
+        "  inner.section.grading: invalid type: string \"1.2\", expected a number (line 65)",
     ];
     let lines: Vec<&str> = message.lines().collect();
     assert_eq!(lines.len(), expected.len(), "{message}");
