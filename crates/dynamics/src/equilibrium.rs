@@ -1,7 +1,7 @@
 //! Static equilibrium of bodies and contacts as they are: the minimum of the energy.
 //!
 //! The elastic energy of the rings is a positive quadratic form and that of the contacts convex. So the total energy is
-//! convex, but for finite rotations by tilts that are free, and its minimum is the equilibrium. Newton's steps are
+//! convex, but for finite motions of the shaft, and its minimum is the equilibrium. Newton's steps are
 //! capped: any start is safe. Cost: a dense factorisation of 2 n_balls (1 + rings) + 5 unknowns per iteration.
 
 use contact::{BearingGeometry, Meridian, Side};
