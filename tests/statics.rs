@@ -33,22 +33,42 @@ pub fn reference() -> Dir {
 
 /// Sum over the balls of the force between ball and ring: [x, y, z], N, on the inner ring with the sign of what the
 /// balls take from it; and its moment about x and y, N m, with the lever of the groove centres at these tilts, rad.
-fn resultant(balls: &Table, side: &str, tilt: [f64; 2]) -> ([f64; 3], [f64; 2]) {
+fn resultant(balls: &Table, side: &str, at: [f64; 4]) -> ([f64; 3], [f64; 2]) {
     let force = balls.column(&format!("{side}_force_n"));
     let angle = balls.column(&format!("{side}_contact_angle_rad"));
     let azimuth = balls.column("azimuth_rad");
+    let across = match side == "inner" && balls.has("inner_across_n") {
+        true => balls.column("inner_across_n"),
+        false => vec![0.0; force.len()],
+    };
     let (mut sum, mut moment) = ([0.0; 3], [0.0; 2]);
     for i in 0..force.len() {
         let ((sin_a, cos_a), (sin, cos)) = (angle[i].sin_cos(), azimuth[i].sin_cos());
         let (radial, axial) = (force[i] * cos_a, force[i] * sin_a);
-        sum[0] += radial * cos;
-        sum[1] += radial * sin;
+        let along = [radial * cos - across[i] * sin, radial * sin + across[i] * cos];
+        sum[0] += along[0];
+        sum[1] += along[1];
         sum[2] += axial;
-        let lever = turned([cos, sin, 0.0], tilt).map(|x| INNER_LEVER * x);
-        moment[0] += lever[1] * axial - lever[2] * radial * sin;
-        moment[1] += lever[2] * radial * cos - lever[0] * axial;
+        let lever = crossing(azimuth[i], at);
+        moment[0] += lever[1] * axial - lever[2] * along[1];
+        moment[1] += lever[2] * along[0] - lever[0] * axial;
     }
     (sum, moment)
+}
+
+/// From the shaft's origin to where the circle of inner groove centres, which x, y and both tilts have moved, crosses
+/// the plane of an azimuth, m.
+fn crossing(azimuth: f64, [x, y, tilt_x, tilt_y]: [f64; 4]) -> [f64; 3] {
+    let (sin, cos) = azimuth.sin_cos();
+    let beside = |v: [f64; 3]| v[1] * cos - v[0] * sin;
+    let lever =
+        |angle: f64| turned([angle.cos(), angle.sin(), 0.0], [tilt_x, tilt_y]).map(|v| INNER_LEVER * v);
+    let moves = x != 0.0 || y != 0.0;
+    let mut angle = azimuth;
+    for _ in 0..4 * usize::from(moves) {
+        angle -= (beside([x, y, 0.0]) + beside(lever(angle))) / INNER_LEVER;
+    }
+    lever(angle)
 }
 
 /// A vector turned by the rotation vector [x, y, 0], to third order in it.
@@ -62,7 +82,7 @@ fn turned(v: [f64; 3], [x, y]: [f64; 2]) -> [f64; 3] {
 fn assert_balanced(balls: &Table, [x, y, z]: [f64; 3]) {
     let scale = x.hypot(y).hypot(z);
     for side in ["inner", "outer"] {
-        let (sum, _) = resultant(balls, side, [0.0; 2]);
+        let (sum, _) = resultant(balls, side, [0.0; 4]);
         for (sum, load) in sum.into_iter().zip([x, y, z]) {
             assert_within(side, sum, load, BALANCE * scale);
         }
@@ -85,7 +105,7 @@ fn ball_forces_balance_the_load() {
 #[test]
 fn the_reaction_of_a_locked_tilt_balances_the_moment_of_the_balls() {
     let dir = reference();
-    let (_, moment) = resultant(&Table::read(&dir, "out/balls.csv"), "inner", [0.0; 2]);
+    let (_, moment) = resultant(&Table::read(&dir, "out/balls.csv"), "inner", [0.0; 4]);
     let shaft = Table::read(&dir, "out/shaft.csv");
     let scale = AXIAL * INNER_LEVER;
     for (name, moment) in ["reaction_tilt_x_n_m", "reaction_tilt_y_n_m"]
@@ -120,10 +140,11 @@ fn free_tilt_and_mean_motion_are_solved() {
         dir.run(out, &[set, &no_stress].concat());
         let balls = Table::read(&dir, &format!("{out}/balls.csv"));
         assert_balanced(&balls, [RADIAL, 0.0, AXIAL]);
+        assert_eq!(balls.has("inner_across_n"), out != "mean");
         if out != "mean" {
             let shaft = Table::read(&dir, &format!("{out}/shaft.csv"));
-            let tilt = ["tilt_x_rad", "tilt_y_rad"].map(|name| shaft.column(name)[0]);
-            let (_, moment) = resultant(&balls, "inner", tilt);
+            let at = ["x_m", "y_m", "tilt_x_rad", "tilt_y_rad"].map(|name| shaft.column(name)[0]);
+            let (_, moment) = resultant(&balls, "inner", at);
             moment
                 .iter()
                 .for_each(|m| assert_within("moment", *m, 0.0, BALANCE * AXIAL * INNER_LEVER));

@@ -36,6 +36,11 @@ impl Table {
         self.rows.iter().map(|row| row[i]).collect()
     }
 
+    /// Whether it has a column.
+    pub fn has(&self, name: &str) -> bool {
+        self.columns.iter().any(|column| column == name)
+    }
+
     /// The rows of one step.
     pub fn step(&self, step: usize) -> Table {
         let rows = self

@@ -34,6 +34,11 @@ pub struct BallResult {
     pub outer: ContactResult,
     /// Displacement from the just-touching position.
     pub displacement_m: Meridian,
+    /// Force of the inner ring on the ball across its meridian plane, towards growing azimuths, N, which the cage
+    /// holds: the groove of a ring that has moved is not round about the axis. None where grooves are projected, and of
+    /// free balls in motion.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub across_n: Option<f64>,
     /// Of a free ball, its turning and its traction.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub free: Option<FreeBallResult>,

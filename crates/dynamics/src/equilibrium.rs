@@ -225,7 +225,7 @@ pub fn centre_unloaded(parts: &BearingParts, u: &mut Displacements) {
         if loaded == [true, true] || loads[ball] > weightless {
             continue;
         }
-        debug_assert!(pair[0].side == Side::Inner && pair[1].side == Side::Outer);
+        debug_assert!([pair[0].side, pair[1].side] == Side::BOTH);
         // Groove centres seen from the ball, then the point of equal gap on their line.
         let [centre_inner, centre_outer] = [0, 1].map(|i| states[i].reach().map(|l| -l));
         let shift = contact::geometry::midway(centre_inner, centre_outer, pair[0].touching, pair[1].touching);

@@ -12,6 +12,7 @@ use crate::effects::steady_balls::SteadyBalls;
 use crate::equilibrium::centre_unloaded;
 use crate::error::DynamicsError;
 use crate::footprint::{Footprint, loaded, sizes};
+use crate::interactions::carried_site::across_on_ball;
 use crate::interactions::raceway_contact::{Site, SiteState, on_rings};
 use crate::loading::LoadCase;
 use crate::model::Model;
@@ -432,6 +433,12 @@ fn ball_results(
             inner: contact(2 * ball + Side::Inner.index()),
             outer: contact(2 * ball + Side::Outer.index()),
             displacement_m: u.balls[ball],
+            across_n: across_on_ball(
+                model,
+                sites[2 * ball].azimuth,
+                &u.shaft,
+                states[2 * ball].on_ring(),
+            ),
             free: None,
         })
         .collect()

@@ -27,17 +27,18 @@ pub fn moment_on_ball(side: Side, ball: &BallResult, arm: [f64; 3], lever: f64) 
     [0, 1, 2].map(|i| of_normal[i] + of_pull[i] + pull.moment[i])
 }
 
-/// From the contact to the ball's centre, N, with what the slope of a real surface adds along the rolling direction.
+/// From the contact to the ball's centre, N, with what acts along the rolling direction: by the slope of a real
+/// surface, and across the plane of a ball on a ring that has moved.
 fn normal_force(side: Side, ball: &BallResult) -> [f64; 3] {
     let contact = ball.contact(side);
     let (sin, cos) = ball.azimuth_rad.sin_cos();
     let (sin_a, cos_a) = contact.contact_angle_rad.sin_cos();
     let radial = -side.sign() * contact.force_n * cos_a;
     let slope = ball.free.and_then(|free| free.traction(side).slope_force_n);
-    let slope = slope.unwrap_or_default();
+    let round = slope.unwrap_or_default() + ball.across_n.filter(|_| side.index() == 0).unwrap_or_default();
     [
-        radial * cos - slope * sin,
-        radial * sin + slope * cos,
+        radial * cos - round * sin,
+        radial * sin + round * cos,
         -side.sign() * contact.force_n * sin_a,
     ]
 }

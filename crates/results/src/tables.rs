@@ -196,7 +196,7 @@ impl Tables {
                     rolling(ball),
                     pocket_cells(i, snapshot).map(number).collect(),
                 ];
-                row([own.concat(), ellipse_cells(ball)].concat())
+                row([own.concat(), ellipse_cells(ball), across_cells(ball)].concat())
             }),
         )?;
         if let (Some(table), Some(cage)) = (&mut self.cage, &snapshot.cage) {
@@ -310,6 +310,11 @@ fn ellipse_cells(ball: &BallResult) -> Vec<String> {
     ellipses.map(|ellipse| ellipse.name().to_string()).collect()
 }
 
+/// Cells of balls that see the inner groove as a torus: the force across their planes.
+fn across_cells(ball: &BallResult) -> Vec<String> {
+    ball.across_n.into_iter().map(number).collect()
+}
+
 /// Columns of [`ellipse_cells`].
 fn ellipse_columns(first: &Snapshot) -> Vec<String> {
     let has_strips = |side: &Side| {
@@ -377,6 +382,8 @@ fn columns(swept: Option<&str>, first: &Snapshot, own: &OwnColumns) -> [Vec<Stri
         balls.extend(names(&POCKET_COLUMNS));
     }
     balls.extend(ellipse_columns(first));
+    let sees_torus = first.balls.iter().any(|ball| ball.across_n.is_some());
+    balls.extend(sees_torus.then(|| "inner_across_n".to_string()));
     let mut shaft = names(&["x_m", "y_m", "z_m", "tilt_x_rad", "tilt_y_rad"]);
     if first.reaction.is_some() {
         shaft.extend(names(&REACTION_COLUMNS));

@@ -1,9 +1,10 @@
 //! How what carries a ring moves its groove at a ball.
 
-use contact::Meridian;
+use contact::{Meridian, Side};
 
 use super::raceway_contact::Site;
-use crate::system::Circle;
+use crate::model::Model;
+use crate::system::{CarriedCircle, Circle};
 
 impl Site {
     /// Motion of the groove centre per unit of each dof of what carries the ring (tilts in rad).
@@ -34,11 +35,24 @@ impl Site {
 
     /// The circle of groove centres.
     pub fn circle(&self) -> Circle {
-        let (sin, cos) = self.azimuth.sin_cos();
-        Circle {
-            azimuth: [cos, sin],
-            radius: self.lever,
-            is_projected: self.is_projected,
-        }
+        circle(self.azimuth, self.lever, self.is_projected)
     }
+}
+
+fn circle(azimuth: f64, radius: f64, is_projected: bool) -> Circle {
+    let (sin, cos) = azimuth.sin_cos();
+    Circle {
+        azimuth: [cos, sin],
+        radius,
+        is_projected,
+    }
+}
+
+/// Force of the inner ring on a ball along e_psi, N, where the ball presses it with `on_ring`, N, in its meridian plane,
+/// on a shaft at these displacements, m and rad; None where grooves are projected.
+pub fn across_on_ball(model: &Model, azimuth: f64, shaft: &[f64; 5], on_ring: Meridian) -> Option<f64> {
+    let radius = model.geometry.centre_radius(Side::Inner);
+    let at = CarriedCircle::COORDINATES.map(|k| shaft[k]);
+    let across = || circle(azimuth, radius, false).across(at, on_ring.to_array());
+    (!model.contact.projects_grooves).then(across)
 }

@@ -2,7 +2,7 @@
 
 pub mod between_contacts;
 pub mod cage;
-mod carried_site;
+pub mod carried_site;
 pub mod closing_contact;
 pub mod contact_damping;
 mod contact_ends;

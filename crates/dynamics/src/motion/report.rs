@@ -12,6 +12,7 @@ use crate::balls::{BallResult, CageResult, ContactResult, FreeBallResult, Fricti
 use crate::effects::Now;
 use crate::error::DynamicsError;
 use crate::footprint::on_groove;
+use crate::interactions::carried_site::across_on_ball;
 use crate::interactions::traction::largest_pv;
 use ring::RingState;
 use ring::rigid::RigidInertia;
@@ -43,10 +44,18 @@ impl Motion<'_> {
                 inner,
                 outer,
                 displacement_m: state.balls[b],
+                across_n: self.across(state, b),
                 free: state.free.as_ref().map(|free| self.free_result(state, free, b)),
             }
         };
         (0..self.model.geometry.n_balls).map(ball).collect()
+    }
+
+    /// Force on a ball of the kinematic cage across its meridian plane, N.
+    fn across(&self, state: &MotionState, ball: usize) -> Option<f64> {
+        let azimuth = self.azimuth_now(state, ball);
+        let found = across_on_ball(self.model, azimuth, &state.shaft, state.forces[2 * ball]);
+        found.filter(|_| state.free.is_none())
     }
 
     /// What a free ball has besides.

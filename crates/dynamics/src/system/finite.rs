@@ -210,6 +210,13 @@ impl Circle {
         ]
     }
 
+    /// Force that keeps the link in its half-plane, along e_psi, N, when `force` acts on the lengths: what the circle
+    /// exerts across the plane.
+    pub fn across(&self, at: FiniteCoordinates, force: [f64; 2]) -> f64 {
+        let [along, ..] = Crossing::new(self, self.local(at)).rows();
+        along[0] * force[0] + along[1] * force[1]
+    }
+
     /// Mean growth between two instants, with which rows times changes are the change of the lengths.
     pub fn mean_rows(&self, start: FiniteCoordinates, end: FiniteCoordinates) -> FiniteRows {
         let between = |share: f64| self.rows(std::array::from_fn(|k| start[k] + share * (end[k] - start[k])));

@@ -155,6 +155,33 @@ fn rows_are_slopes_and_curvature_is_theirs() {
     }
 }
 
+/// Wrong: forces of a table would not balance: across the plane the circle pushes with its slope along the force. Two
+/// points of the circle give its direction where it meets the plane.
+#[test]
+fn a_force_has_no_part_along_the_circle() {
+    for at in MOTIONS {
+        let [cos, sin] = CIRCLE.azimuth;
+        let beside = [-sin, cos, 0.0];
+        let (mut low, mut high) = (-0.6, 0.6);
+        for _ in 0..100 {
+            let middle = 0.5 * (low + high);
+            match dot(place(&CIRCLE, at, middle), beside) > 0.0 {
+                true => high = middle,
+                false => low = middle,
+            }
+        }
+        let [before, after] = [low - 1e-5, low + 1e-5].map(|delta| place(&CIRCLE, at, delta));
+        let along = [0, 1, 2].map(|i| after[i] - before[i]);
+        let force = [-300.0, 90.0];
+        let across = CIRCLE.across(at, force);
+        let in_space = [0, 1, 2]
+            .map(|i| force[0] * [cos, sin, 0.0][i] - across * beside[i] + force[1] * [0.0, 0.0, 1.0][i]);
+        let part = dot(in_space, along) / dot(along, along).sqrt();
+        assert!(part.abs() < 1e-6, "{at:?}: {part}");
+    }
+    assert_eq!(PROJECTED.across(MOTIONS[1], [-300.0, 90.0]), 0.0);
+}
+
 /// Wrong: contacts would make or lose energy over a step, because forces act through other slopes than lengths
 /// change. A step far larger than any of a motion.
 #[test]
