@@ -331,7 +331,16 @@ fn what_cannot_be_plotted_is_said() {
         &["motion", "--ball", "40"],
         "there is no ball 40; balls are 0 to 17",
     );
-    refused(&["sweep", "--step", "7"], "7");
+    for command in ["plot", "report"] {
+        let told = dir.raceway(&[command, "motion", "--step", "7"]);
+        let expected = "folder motion has no step 7; committed steps are 0 to 10, the nearest are 5 and 10";
+        assert_eq!(told.code, Some(2));
+        assert!(told.stderr.contains(expected), "{command}: {}", told.stderr);
+    }
+    refused(
+        &["sweep", "--step", "77"],
+        "folder sweep has no step 77; committed steps are 0 to 1, the nearest is 1",
+    );
 }
 
 /// Wrong: results without their largest table, such as one that was left behind in a copy, would have no figures.

@@ -157,23 +157,7 @@ fn choose_step(dir: &Path, step: Option<u64>) -> Result<u64, Failure> {
         .into());
     }
     if !steps.contains(&step) {
-        let (first, last) = match (steps.first(), steps.last()) {
-            (Some(first), Some(last)) => (*first, *last),
-            _ => {
-                return Err(checkpoint::CheckpointError::NoSteps {
-                    path: dir.to_path_buf(),
-                }
-                .into());
-            }
-        };
-        let path = dir.to_path_buf();
-        return Err(checkpoint::CheckpointError::UnknownStep {
-            path,
-            step,
-            first,
-            last,
-        }
-        .into());
+        return Err(checkpoint::CheckpointError::unknown_step(dir, step, steps).into());
     }
     require_state(dir, step, &steps)?;
     Ok(step)
