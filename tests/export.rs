@@ -337,3 +337,43 @@ fn an_export_that_would_write_over_a_file_writes_none() {
         refused.stderr
     );
 }
+
+/// Wrong: who gives the folder of another command would hear of a file that no such folder ever has.
+#[test]
+fn commands_of_runs_say_what_another_command_wrote() {
+    let dir = Dir::with_scene(SCENE);
+    let made = dir.raceway(&[&["stiffness", "scene.toml", "--out", "k"], &RIGID[..]].concat());
+    assert_eq!(made.code, Some(0), "{}", made.stderr);
+    let commands: [&[&str]; 9] = [
+        &["report", "k"],
+        &["life", "k"],
+        &["export", "k", "--to", "csv"],
+        &["pack", "k"],
+        &["resume", "k"],
+        &["cycles", "k"],
+        &["spectrum", "k", "--probe", "x_m"],
+        &["spall-length", "k", "--ring", "outer"],
+        &["ball-loads", "k", "--matrix", "none.json"],
+    ];
+    let refused = |command: &[&str], expected: &str| {
+        let told = dir.raceway(command);
+        assert_eq!(told.code, Some(2), "{command:?}");
+        assert!(told.stderr.contains(expected), "{command:?}: {}", told.stderr);
+    };
+    for command in commands {
+        refused(
+            command,
+            "k holds a stiffness, from raceway stiffness; expected the results of raceway run; raceway plot draws",
+        );
+    }
+    std::fs::create_dir(dir.path("h")).unwrap();
+    dir.write("h/heat.json", "{}");
+    for command in ["report", "plot"] {
+        refused(
+            &[command, "h"],
+            "h holds temperatures, from raceway heat; expected the results of raceway run",
+        );
+    }
+    // A matrix at one point has no figure, which plot itself says.
+    refused(&["plot", "k"], "k has the stiffness at one point");
+}

@@ -154,6 +154,8 @@ const OF_OTHERS: [(&str, &str); 8] = [
     (LIFE_FILE, "a life, from raceway life"),
     (TIMES, EXPORT),
 ];
+/// What `raceway plot` draws besides runs.
+const DRAWN: [&str; 2] = [STIFFNESS_FILE, CAMPBELL_TABLE];
 const EXPORT: &str = "steps for other programs, from raceway export";
 
 /// What a folder without a run holds; None where there is a run, or nothing that is known.
@@ -177,6 +179,28 @@ fn without_run(dir: &Path) -> Result<Option<&'static str>, Failure> {
         "{} holds no run: expected step files, {}",
         dir.display(),
         OF_RUNS.join(", ")
+    )
+    .into())
+}
+
+/// Refuses a folder that another command than `raceway run` wrote, and says which; `is_drawn`: for `raceway plot`.
+pub fn require_run_folder(dir: &Path, is_drawn: bool) -> Result<(), Failure> {
+    let has = |name: &str| dir.join(name).exists();
+    let is_shown = DRAWN.into_iter().any(has);
+    if !dir.is_dir() || plot::has_tables(dir) || is_drawn && is_shown {
+        return Ok(());
+    }
+    // What is not known here is refused by the command, which says what it needs.
+    let Ok(Some(what)) = without_run(dir) else {
+        return Ok(());
+    };
+    let advice = match is_shown {
+        true => "; raceway plot draws what is in this one",
+        false => "",
+    };
+    Err(anyhow!(
+        "{} holds {what}; expected the results of raceway run{advice}",
+        dir.display()
     )
     .into())
 }

@@ -49,7 +49,7 @@ pub struct LoadMatrixCommand {
 #[derive(Debug, Args)]
 pub struct BallLoadsCommand {
     /// Folder of the results of a run with the gauges of the matrix.
-    dir: PathBuf,
+    pub dir: PathBuf,
     /// The load_matrix.json of raceway load-matrix.
     #[arg(long)]
     matrix: PathBuf,

@@ -46,13 +46,13 @@ use results::whole::{make_output_folder, require_own_picture, write_picture};
 pub use choice::Choice;
 pub use named::Named;
 pub use quantity::AxisUnit;
-pub use run::{Results, Steps, swept_column};
+pub use run::{Results, Steps, has_tables, swept_column};
 
 /// What the command line asks for.
 #[derive(Debug, Args)]
 pub struct Plot {
     /// Folder of the results.
-    dir: PathBuf,
+    pub dir: PathBuf,
     /// Folder of the figures; default: figures in the folder of the results. Figures in it are replaced.
     #[arg(long)]
     out: Option<PathBuf>,

@@ -11,6 +11,11 @@ use results::table::Table;
 /// Forces of balls, a row for each at every step.
 const BALLS: &str = "balls.csv";
 
+/// Tables of a run, by the rows of which its figures and others are made.
+const TABLES: [&str; 4] = [BALLS, "shaft.csv", "energy.csv", "probes.csv"];
+/// Natural modes, a row for each.
+const MODES: &str = "modes.csv";
+
 /// Tables of a run and what its steps are.
 pub struct Results {
     /// Folder.
@@ -47,8 +52,7 @@ impl Results {
                 dir.display()
             ));
         }
-        let [balls, shaft, energy, probes] =
-            [BALLS, "shaft.csv", "energy.csv", "probes.csv"].map(|name| Table::read(dir, name));
+        let [balls, shaft, energy, probes] = TABLES.map(|name| Table::read(dir, name));
         let (balls, shaft, energy, probes) = (balls?, shaft?, energy?, probes?);
         // Tables of a run agree on what its steps are: the first that is there tells.
         let tables = [&balls, &shaft, &energy, &probes];
@@ -93,6 +97,14 @@ impl Results {
 pub fn axis_of(table: &Table, column: &str, number: &str) -> anyhow::Result<(Axis, Vec<f64>)> {
     let (name, unit) = quantity::split(column);
     let values = unit.of(table.column(column)?);
+/// Whether a folder has tables of a run: they are read without its other files, too.
+pub fn has_tables(dir: &Path) -> bool {
+    TABLES
+        .into_iter()
+        .chain([MODES])
+        .any(|name| dir.join(name).exists())
+}
+
     if values.iter().all(|v| v.is_nan()) {
         let axis = Axis::linear(format!("point of the sweep of {name}"), "1").ticks_every(1.0);
         return Ok((axis, table.column(number)?.to_vec()));
