@@ -17,6 +17,7 @@ use input::shell_word;
 use results::about::{MAY_CHANGE, OVERRIDES, SCENE_FILE, WARNINGS, require_named_files, scene_file};
 use results::failure::{Failure, agree};
 use results::folder::start_again;
+use results::summary::scene_as_named;
 use scene::{MeshFiles, Scene, difference};
 
 use crate::options::Limits;
@@ -220,7 +221,7 @@ fn scene_of(
     let overrides = about.get(OVERRIDES).map_or(Vec::new(), |text| lines(text));
     let path = match (&request.scene, about.get(SCENE_FILE)) {
         (Some(path), _) => path.clone(),
-        (None, Some(path)) => scene_file(&request.dir, path),
+        (None, Some(path)) => scene_as_named(&request.dir, scene_file(&request.dir, path)),
         (None, None) => {
             let step = request.dir.join(step_file_name(record.step));
             return Err(OverTime::without_scene_file(&step, &request.dir));
