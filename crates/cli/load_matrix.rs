@@ -8,6 +8,7 @@ use clap::Args;
 use comm::print;
 use contact::Side;
 use dynamics::StaticSolver;
+use dynamics::effects::rules::share_of;
 use results::failure::Failure;
 use results::gauges::Gauges;
 use results::integrity::warn_of_doubts;
@@ -227,8 +228,16 @@ pub fn ball_loads(command: &BallLoadsCommand) -> Result<(), Failure> {
          largest at most; {LOADS} in {}",
         probes.n_rows() - found.left_out,
         found.left_out,
-        100.0 * found.worst / found.largest.max(f64::MIN_POSITIVE),
+        deviation(found.worst / found.largest.max(f64::MIN_POSITIVE)),
         dir.display()
     ));
     Ok(())
+
+/// A largest deviation over the largest load.
+fn deviation(ratio: f64) -> String {
+    match ratio < 10.0 {
+        true => format!("{:.3} % of the largest", 100.0 * ratio),
+        false => share_of(ratio, "the largest"),
+    }
+}
 }
