@@ -67,6 +67,11 @@ impl Results {
         })
     }
 
+    /// Whether step files may show a load: those of natural modes hold shapes.
+    pub fn may_show_loads(&self) -> bool {
+        self.balls.is_some() || !self.dir.join(MODES).exists()
+    }
+
     /// What the steps are plotted against: the axis, and its value for each row of `table`; none for a single step.
     pub fn against(&self, table: &Table) -> anyhow::Result<Option<(Axis, Vec<f64>)>> {
         match &self.steps {
@@ -92,11 +97,6 @@ impl Results {
     }
 }
 
-/// The axis of the swept values in a column of a table, and the places of its rows on it. Words have no place on an
-/// axis; then the points have their numbers, from the column `number`.
-pub fn axis_of(table: &Table, column: &str, number: &str) -> anyhow::Result<(Axis, Vec<f64>)> {
-    let (name, unit) = quantity::split(column);
-    let values = unit.of(table.column(column)?);
 /// Whether a folder has tables of a run: they are read without its other files, too.
 pub fn has_tables(dir: &Path) -> bool {
     TABLES
@@ -105,6 +105,11 @@ pub fn has_tables(dir: &Path) -> bool {
         .any(|name| dir.join(name).exists())
 }
 
+/// The axis of the swept values in a column of a table, and the places of its rows on it. Words have no place on an
+/// axis; then the points have their numbers, from the column `number`.
+pub fn axis_of(table: &Table, column: &str, number: &str) -> anyhow::Result<(Axis, Vec<f64>)> {
+    let (name, unit) = quantity::split(column);
+    let values = unit.of(table.column(column)?);
     if values.iter().all(|v| v.is_nan()) {
         let axis = Axis::linear(format!("point of the sweep of {name}"), "1").ticks_every(1.0);
         return Ok((axis, table.column(number)?.to_vec()));
