@@ -384,3 +384,17 @@ fn figures_of_a_list_have_no_ball_and_no_step_to_choose() {
         assert!(refused.stderr.contains(expected), "{}", refused.stderr);
     }
 }
+
+/// Wrong: every reason would stand twice, so that one missing file fills the screen.
+#[test]
+fn figures_that_cannot_be_made_have_their_reason_once() {
+    let dir = plotted();
+    std::fs::remove_file(dir.path("sweep/mesh.hdf")).unwrap();
+    let told = dir.raceway(&["plot", "sweep"]);
+    assert_eq!(told.code, Some(2), "{}", told.stdout);
+    let reasons: Vec<&str> = told.stderr.split("; figures of").collect();
+    assert!(reasons.len() > 1, "{}", told.stderr);
+    for reason in reasons {
+        assert_eq!(reason.matches("No such file").count(), 1, "{}", told.stderr);
+    }
+}

@@ -38,7 +38,7 @@ use clap::Args;
 use comm::print;
 use figure::Figure;
 use results::answer;
-use results::failure::Failure;
+use results::failure::{Failure, one_line};
 use results::folder::say_later;
 use results::integrity::warn_of_doubts;
 use results::whole::{make_output_folder, require_own_picture, write_picture};
@@ -186,7 +186,7 @@ pub fn figures(dir: &Path, choice: &Choice) -> Result<Figures, Failure> {
             Ok(made) => drawn.extend(made),
             Err(error) if is_chosen => return Err(error.into()),
             Err(error) => {
-                problems.push(format!("figures of {group}: {error:#}"));
+                problems.push(format!("figures of {group}: {}", one_line(&error)));
                 first.get_or_insert(error);
             }
         }
