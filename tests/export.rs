@@ -69,6 +69,22 @@ fn info_knows_folders_without_a_run_and_the_index_of_steps() {
     );
 }
 
+/// Wrong: times that steps add up to would be said with the round-off of the sum.
+#[test]
+fn info_says_times_as_they_were_meant() {
+    let dir = moved();
+    dir.run(
+        "summed",
+        &[
+            &RIGID[..],
+            &["--set", "dynamic.duration=0.3 ms", "--set", "dynamic.step=20 us"],
+        ]
+        .concat(),
+    );
+    let told = dir.raceway(&["info", "summed"]);
+    assert!(told.stdout.contains("t = 0.0 s to 0.0003 s,"), "{}", told.stdout);
+}
+
 /// Wrong: a user could not tell what a folder or a file holds, or damage would be hidden.
 #[test]
 fn info_says_what_is_there() {

@@ -288,13 +288,18 @@ fn line_of_steps(sound: &[(u64, f64)], n_steps: usize, bytes: u64) {
                     "{n} from {} to {}, t = {:?} s to {:?} s, {} in all",
                     first.0,
                     last.0,
-                    first.1,
-                    last.1,
+                    without_round_off(first.1),
+                    without_round_off(last.1),
                     size(bytes)
                 ),
             );
         }
     }
+}
+
+/// A time of steps that were added up, for people: 0.3 for 0.30000000000000004.
+fn without_round_off(time: f64) -> f64 {
+    format!("{time:.12e}").parse().unwrap_or(time)
 }
 
 fn lines_of_packs(dir: &Path) -> Result<(), CheckpointError> {

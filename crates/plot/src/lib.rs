@@ -100,8 +100,9 @@ pub fn plot(request: &Plot) -> Result<(), Failure> {
     answer::add("folder", &out);
     answer::add("figures", &names);
     print::line(format_args!(
-        "{} figures as svg and png in {}: {}",
+        "{} {} as svg and png in {}: {}",
         names.len(),
+        if names.len() == 1 { "figure" } else { "figures" },
         out.display(),
         names.join(", ")
     ));
