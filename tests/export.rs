@@ -69,6 +69,22 @@ fn info_knows_folders_without_a_run_and_the_index_of_steps() {
     );
 }
 
+/// Wrong: times that steps add up to would be said with the round-off of the sum.
+#[test]
+fn info_says_times_as_they_were_meant() {
+    let dir = moved();
+    dir.run(
+        "summed",
+        &[
+            &RIGID[..],
+            &["--set", "dynamic.duration=0.3 ms", "--set", "dynamic.step=20 us"],
+        ]
+        .concat(),
+    );
+    let told = dir.raceway(&["info", "summed"]);
+    assert!(told.stdout.contains("t = 0.0 s to 0.0003 s,"), "{}", told.stdout);
+}
+
 /// Wrong: a user could not tell what a folder or a file holds, or damage would be hidden.
 #[test]
 fn info_says_what_is_there() {
@@ -336,4 +352,44 @@ fn an_export_that_would_write_over_a_file_writes_none() {
         "{}",
         refused.stderr
     );
+}
+
+/// Wrong: who gives the folder of another command would hear of a file that no such folder ever has.
+#[test]
+fn commands_of_runs_say_what_another_command_wrote() {
+    let dir = Dir::with_scene(SCENE);
+    let made = dir.raceway(&[&["stiffness", "scene.toml", "--out", "k"], &RIGID[..]].concat());
+    assert_eq!(made.code, Some(0), "{}", made.stderr);
+    let commands: [&[&str]; 9] = [
+        &["report", "k"],
+        &["life", "k"],
+        &["export", "k", "--to", "csv"],
+        &["pack", "k"],
+        &["resume", "k"],
+        &["cycles", "k"],
+        &["spectrum", "k", "--probe", "x_m"],
+        &["spall-length", "k", "--ring", "outer"],
+        &["ball-loads", "k", "--matrix", "none.json"],
+    ];
+    let refused = |command: &[&str], expected: &str| {
+        let told = dir.raceway(command);
+        assert_eq!(told.code, Some(2), "{command:?}");
+        assert!(told.stderr.contains(expected), "{command:?}: {}", told.stderr);
+    };
+    for command in commands {
+        refused(
+            command,
+            "k holds a stiffness, from raceway stiffness; expected the results of raceway run; raceway plot draws",
+        );
+    }
+    std::fs::create_dir(dir.path("h")).unwrap();
+    dir.write("h/heat.json", "{}");
+    for command in ["report", "plot"] {
+        refused(
+            &[command, "h"],
+            "h holds temperatures, from raceway heat; expected the results of raceway run",
+        );
+    }
+    // A matrix at one point has no figure, which plot itself says.
+    refused(&["plot", "k"], "k has the stiffness at one point");
 }

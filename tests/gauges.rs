@@ -380,7 +380,7 @@ fn load_matrices_refuse_what_they_cannot_tell() {
         &matrix("few/load_matrix.json"),
         "17 gauges on the outer ring do not tell the loads of 18 balls apart; expected one gauge per ball at least",
     );
-    refused(&few, "cannot write few/load_matrix.json: File exists");
+    refused(&few, "few already holds load_matrix.json; choose another");
     refused(
         &matrix("scene.toml"),
         "scene.toml is no load matrix; expected the load_matrix.json of raceway load-matrix",

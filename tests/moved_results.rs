@@ -116,3 +116,19 @@ fn results_behind_a_link_are_resumed() {
         &["--scene says where it is", "inner.msh"],
     );
 }
+
+/// Wrong: a scene that was given by its full path would have another name after a stop, which only holds from the
+/// folder of that day.
+#[test]
+fn a_scene_by_its_full_path_keeps_that_name() {
+    let dir = moved();
+    let scene = dir.path("scene.toml").display().to_string();
+    let stopped = dir.raceway(&["run", &scene, "--out", "cut", "--wall-time", "00:00:00"]);
+    assert_eq!(stopped.code, Some(75), "{}", stopped.stderr);
+    resumed(&dir, &["cut"]);
+    assert_eq!(summary(&dir, "cut")["scene"], scene.as_str());
+    // Given from here it is named from here.
+    copy(&dir, "whole", "again");
+    resumed(&dir, &["again", "--step", "10"]);
+    assert_eq!(summary(&dir, "again")["scene"], "scene.toml");
+}

@@ -331,7 +331,16 @@ fn what_cannot_be_plotted_is_said() {
         &["motion", "--ball", "40"],
         "there is no ball 40; balls are 0 to 17",
     );
-    refused(&["sweep", "--step", "7"], "7");
+    for command in ["plot", "report"] {
+        let told = dir.raceway(&[command, "motion", "--step", "7"]);
+        let expected = "folder motion has no step 7; committed steps are 0 to 10, the nearest are 5 and 10";
+        assert_eq!(told.code, Some(2));
+        assert!(told.stderr.contains(expected), "{command}: {}", told.stderr);
+    }
+    refused(
+        &["sweep", "--step", "77"],
+        "folder sweep has no step 77; committed steps are 0 to 1, the nearest is 1",
+    );
 }
 
 /// Wrong: results without their largest table, such as one that was left behind in a copy, would have no figures.
@@ -341,22 +350,24 @@ fn what_is_there_is_drawn_without_the_table_of_balls() {
     for of in ["motion", "sweep"] {
         let figures = format!("{of}/figures/");
         let mut expected = names(&dir, &figures, ".svg");
+        let title = || {
+            let text = std::fs::read_to_string(dir.path(&format!("{figures}section_inner.svg"))).unwrap();
+            let from = text.find("Stress in the section").unwrap();
+            text[from..].split(", step").next().unwrap().to_string()
+        };
+        let by_table = title();
         std::fs::remove_file(dir.path(&format!("{of}/balls.csv"))).unwrap();
         std::fs::remove_dir_all(dir.path(&figures)).unwrap();
         let outcome = dir.raceway(&["plot", of]);
         assert_eq!(outcome.code, Some(0), "{}", outcome.stderr);
-        // The others are drawn under the ball that carries most, or with the balls.
-        let of_balls = [
-            "ball_",
-            "contact_angle",
-            "peak_pressure",
-            "raceway_",
-            "groove_",
-            "section_",
-            "deformed_",
-        ];
+        // The step files tell which ball carries most, and so where the sections are.
+        let of_balls = ["ball_", "contact_angle", "peak_pressure"];
         expected.retain(|name| !of_balls.iter().any(|start| name.starts_with(start)));
         assert_eq!(names(&dir, &figures, ".svg"), expected, "{of}");
+        // In motion the table has the ball in the middle of the step, and the step file where it ends.
+        if of == "sweep" {
+            assert_eq!(title(), by_table);
+        }
     }
 }
 
@@ -371,5 +382,19 @@ fn figures_of_a_list_have_no_ball_and_no_step_to_choose() {
         let expected =
             "--ball and --step choose from the figures of one bearing: out has the results of several";
         assert!(refused.stderr.contains(expected), "{}", refused.stderr);
+    }
+}
+
+/// Wrong: every reason would stand twice, so that one missing file fills the screen.
+#[test]
+fn figures_that_cannot_be_made_have_their_reason_once() {
+    let dir = plotted();
+    std::fs::remove_file(dir.path("sweep/mesh.hdf")).unwrap();
+    let told = dir.raceway(&["plot", "sweep"]);
+    assert_eq!(told.code, Some(2), "{}", told.stdout);
+    let reasons: Vec<&str> = told.stderr.split("; figures of").collect();
+    assert!(reasons.len() > 1, "{}", told.stderr);
+    for reason in reasons {
+        assert_eq!(reason.matches("No such file").count(), 1, "{}", told.stderr);
     }
 }

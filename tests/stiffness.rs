@@ -396,7 +396,7 @@ fn a_campbell_diagram_has_modes_and_lines_over_the_speed() {
     );
     let plotted = dir.raceway(&["plot", "c"]);
     assert!(
-        plotted.stdout.contains("1 figures as svg and png"),
+        plotted.stdout.contains("1 figure as svg and png"),
         "{}{}",
         plotted.stdout,
         plotted.stderr

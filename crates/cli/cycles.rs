@@ -23,7 +23,7 @@ const CYCLES: &str = "stress_cycles.csv";
 #[derive(Debug, Args)]
 pub struct Cycles {
     /// Folder of the results of a scene with probes.
-    dir: PathBuf,
+    pub dir: PathBuf,
     /// Start of the time that counts, s; such as the start of a revolution.
     #[arg(long, default_value_t = f64::NEG_INFINITY)]
     from: f64,

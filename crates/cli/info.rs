@@ -154,6 +154,8 @@ const OF_OTHERS: [(&str, &str); 8] = [
     (LIFE_FILE, "a life, from raceway life"),
     (TIMES, EXPORT),
 ];
+/// What `raceway plot` draws besides runs.
+const DRAWN: [&str; 2] = [STIFFNESS_FILE, CAMPBELL_TABLE];
 const EXPORT: &str = "steps for other programs, from raceway export";
 
 /// What a folder without a run holds; None where there is a run, or nothing that is known.
@@ -177,6 +179,28 @@ fn without_run(dir: &Path) -> Result<Option<&'static str>, Failure> {
         "{} holds no run: expected step files, {}",
         dir.display(),
         OF_RUNS.join(", ")
+    )
+    .into())
+}
+
+/// Refuses a folder that another command than `raceway run` wrote, and says which; `is_drawn`: for `raceway plot`.
+pub fn require_run_folder(dir: &Path, is_drawn: bool) -> Result<(), Failure> {
+    let has = |name: &str| dir.join(name).exists();
+    let is_shown = DRAWN.into_iter().any(has);
+    if !dir.is_dir() || plot::has_tables(dir) || is_drawn && is_shown {
+        return Ok(());
+    }
+    // What is not known here is refused by the command, which says what it needs.
+    let Ok(Some(what)) = without_run(dir) else {
+        return Ok(());
+    };
+    let advice = match is_shown {
+        true => "; raceway plot draws what is in this one",
+        false => "",
+    };
+    Err(anyhow!(
+        "{} holds {what}; expected the results of raceway run{advice}",
+        dir.display()
     )
     .into())
 }
@@ -264,13 +288,18 @@ fn line_of_steps(sound: &[(u64, f64)], n_steps: usize, bytes: u64) {
                     "{n} from {} to {}, t = {:?} s to {:?} s, {} in all",
                     first.0,
                     last.0,
-                    first.1,
-                    last.1,
+                    without_round_off(first.1),
+                    without_round_off(last.1),
                     size(bytes)
                 ),
             );
         }
     }
+}
+
+/// A time of steps that were added up, for people: 0.3 for 0.30000000000000004.
+fn without_round_off(time: f64) -> f64 {
+    format!("{time:.12e}").parse().unwrap_or(time)
 }
 
 fn lines_of_packs(dir: &Path) -> Result<(), CheckpointError> {

@@ -8,6 +8,7 @@ use clap::Args;
 use comm::print;
 use contact::Side;
 use dynamics::StaticSolver;
+use dynamics::effects::rules::share_of;
 use results::failure::Failure;
 use results::gauges::Gauges;
 use results::integrity::warn_of_doubts;
@@ -16,8 +17,7 @@ use results::probe_places::side_of;
 use results::shown::Shown;
 use results::survey::say_doubts;
 use results::table::Table;
-use results::whole::make_asked_folder;
-use results::whole::write;
+use results::whole::{make_asked_folder, require_free, write};
 use scene::{Analysis, Scene, build_model, doubts};
 use spectrum::scene_of;
 
@@ -49,7 +49,7 @@ pub struct LoadMatrixCommand {
 #[derive(Debug, Args)]
 pub struct BallLoadsCommand {
     /// Folder of the results of a run with the gauges of the matrix.
-    dir: PathBuf,
+    pub dir: PathBuf,
     /// The load_matrix.json of raceway load-matrix.
     #[arg(long)]
     matrix: PathBuf,
@@ -66,6 +66,7 @@ pub fn load_matrix(command: &LoadMatrixCommand) -> Result<(), Failure> {
     }
     let side = ring_of(&scene, command.ring.as_deref())?;
     let time = instant((&scene.analysis, &scene.path), command.time)?;
+    require_free(&command.out, &[MATRIX_FILE, MATRIX_TABLE])?;
     let (model, _) = build_model(&scene)?;
     say_doubts(&doubts(&scene, &model));
     let gauges = Gauges::new(&scene.probes.gauges, &model)?;
@@ -223,12 +224,19 @@ pub fn ball_loads(command: &BallLoadsCommand) -> Result<(), Failure> {
         old.starts_with(head.as_bytes())
     })?;
     print::line(format_args!(
-        "{} steps, {} left out with balls elsewhere; loads differ from those of the run by {:.3} % of the \
-         largest at most; {LOADS} in {}",
+        "{} steps, {} left out with balls elsewhere; loads differ from those of the run by {} at most; {LOADS} in {}",
         probes.n_rows() - found.left_out,
         found.left_out,
-        100.0 * found.worst / found.largest.max(f64::MIN_POSITIVE),
+        deviation(found.worst / found.largest.max(f64::MIN_POSITIVE)),
         dir.display()
     ));
     Ok(())
+}
+
+/// A largest deviation over the largest load.
+fn deviation(ratio: f64) -> String {
+    match ratio < 10.0 {
+        true => format!("{:.3} % of the largest", 100.0 * ratio),
+        false => share_of(ratio, "the largest"),
+    }
 }

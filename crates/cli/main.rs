@@ -376,7 +376,8 @@ fn prepare(arguments: &Arguments) -> Result<(), Failure> {
         let threads = rayon::current_num_threads();
         print::note(format_args!("{ranks} ranks, {threads} threads on rank 0"));
     }
-    Ok(())
+    let is_drawn = matches!(arguments.command, Command::Plot(_));
+    folder_of(&arguments.command).map_or(Ok(()), |dir| agree(info::require_run_folder(dir, is_drawn)))
 }
 
 /// What a file or folder holds; with `verify` its bytes are read too.
@@ -388,6 +389,23 @@ fn info_of(path: &Path, verify: bool) -> Result<(), Failure> {
     match path.is_dir() && !plot::bearings(path)?.is_empty() {
         true => several_info::info(path, depth),
         false => info::info(path, depth),
+    }
+}
+
+/// The folder of a run that a command reads.
+fn folder_of(command: &Command) -> Option<&Path> {
+    match command {
+        Command::Resume(request) => Some(&request.dir),
+        Command::Pack(request) => Some(&request.dir),
+        Command::Cycles(request) => Some(&request.dir),
+        Command::Export(request) => Some(&request.dir),
+        Command::Plot(request) => Some(&request.dir),
+        Command::Report(request) => Some(&request.dir),
+        Command::Spectrum(request) => Some(&request.dir),
+        Command::SpallLength(request) => Some(&request.dir),
+        Command::BallLoads(request) => Some(&request.dir),
+        Command::Life(request) => request.dir.as_deref(),
+        _ => None,
     }
 }
 

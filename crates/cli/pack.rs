@@ -13,7 +13,7 @@ use results::files::note_dead_owner;
 #[derive(Debug, Args)]
 pub struct Pack {
     /// Folder of the results; no run may be writing to it.
-    dir: PathBuf,
+    pub dir: PathBuf,
     /// Newest steps that stay files of their own, and at least all from the newest with a restart state; a run resumes
     /// from files of their own only.
     #[arg(long, default_value_t = 2, value_parser = clap::value_parser!(u32).range(1..))]

@@ -17,6 +17,7 @@ use input::shell_word;
 use results::about::{MAY_CHANGE, OVERRIDES, SCENE_FILE, WARNINGS, require_named_files, scene_file};
 use results::failure::{Failure, agree};
 use results::folder::start_again;
+use results::summary::scene_as_named;
 use scene::{MeshFiles, Scene, difference};
 
 use crate::options::Limits;
@@ -157,23 +158,7 @@ fn choose_step(dir: &Path, step: Option<u64>) -> Result<u64, Failure> {
         .into());
     }
     if !steps.contains(&step) {
-        let (first, last) = match (steps.first(), steps.last()) {
-            (Some(first), Some(last)) => (*first, *last),
-            _ => {
-                return Err(checkpoint::CheckpointError::NoSteps {
-                    path: dir.to_path_buf(),
-                }
-                .into());
-            }
-        };
-        let path = dir.to_path_buf();
-        return Err(checkpoint::CheckpointError::UnknownStep {
-            path,
-            step,
-            first,
-            last,
-        }
-        .into());
+        return Err(checkpoint::CheckpointError::unknown_step(dir, step, steps).into());
     }
     require_state(dir, step, &steps)?;
     Ok(step)
@@ -236,7 +221,7 @@ fn scene_of(
     let overrides = about.get(OVERRIDES).map_or(Vec::new(), |text| lines(text));
     let path = match (&request.scene, about.get(SCENE_FILE)) {
         (Some(path), _) => path.clone(),
-        (None, Some(path)) => scene_file(&request.dir, path),
+        (None, Some(path)) => scene_as_named(&request.dir, scene_file(&request.dir, path)),
         (None, None) => {
             let step = request.dir.join(step_file_name(record.step));
             return Err(OverTime::without_scene_file(&step, &request.dir));

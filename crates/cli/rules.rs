@@ -13,7 +13,7 @@
 
 use contact::Side;
 use dynamics::Model;
-use dynamics::effects::rules::{Case, MATTERS, PeakLoad, percent};
+use dynamics::effects::rules::{Case, MATTERS, PeakLoad, share_of};
 use results::failure::Failure;
 use scene::{Analysis, Scene, Shaft, ShaftMotion, material, speeds};
 
@@ -185,9 +185,9 @@ fn flexibility(scene: &Scene, case: &Case<'_>) -> Vec<String> {
         if ring.body.is_none() && ratio >= MATTERS {
             lines.push(format!(
                 "{name}.flexible is false, but a ring that nothing holds stretches by Z Q cos a r / (2 pi E A) = {:.2} \
-                 um, {} of the Hertz approach; less on a solid shaft or in a solid housing",
+                 um, {}; less on a solid shaft or in a solid housing",
                 1e6 * stretch,
-                percent(ratio)
+                share_of(ratio, "the Hertz approach")
             ));
         }
     }

@@ -13,7 +13,7 @@ use results::list_folder::{ended_early, is_unfinished};
 use results::reduction::take_arrays;
 use results::several::{BEARINGS_TABLE, SCENE_TEXT};
 use results::state_arrays::{self, Arrays};
-use results::summary::read_summary;
+use results::summary::{read_summary, scene_as_named};
 use results::watch::Watch;
 use scene::{AnyScene, BearingOnShaft, MeshFiles, Scene, SeveralScene, difference};
 
@@ -211,7 +211,7 @@ fn read_step(
     let about = read_about(&first)?;
     let path = match (changes.scene, about.get(SCENE_FILE)) {
         (Some(path), _) => path.to_path_buf(),
-        (None, Some(path)) => scene_file(&folders[0], path),
+        (None, Some(path)) => scene_as_named(&folders[0], scene_file(&folders[0], path)),
         (None, None) => return Err(OverTime::without_scene_file(&first, dir)),
     };
     let before: Vec<String> = about

@@ -63,7 +63,10 @@ const OVERRIDES: [Case; 8] = [
         &["--set", "bearing.bals=17"],
         "unknown key \"bals\" in [bearing]; did you mean \"balls\"?",
     ),
-    (&["--set", "bearing.bals=17"], "(with --set \"bearing.bals=17\")"),
+    (
+        &["--set", "bearing.bals=17"],
+        "error: --set \"bearing.bals=17\": unknown key",
+    ),
     (
         &["--set", "bearing.width=16"],
         "bearing.width: 16 is a number without a unit; expected a length",

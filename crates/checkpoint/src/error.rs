@@ -30,16 +30,14 @@ pub enum CheckpointError {
         path: PathBuf,
     },
     /// The step asked for is not there.
-    #[error("folder {} has no step {step}; committed steps are {first} to {last}", path.display())]
+    #[error("folder {} has no step {step}; committed steps are {}", path.display(), range_and_nearest(steps, *step))]
     UnknownStep {
         /// The folder.
         path: PathBuf,
         /// The step asked for.
         step: u64,
-        /// First committed step.
-        first: u64,
-        /// Last committed step.
-        last: u64,
+        /// Numbers of the steps that are there, growing; at least one.
+        steps: Vec<u64>,
     },
     /// Another process writes to the folder.
     #[error("{owner} is writing to folder {}; wait until it ends, or stop it", path.display())]
@@ -183,6 +181,15 @@ pub enum CheckpointError {
 }
 
 impl CheckpointError {
+    /// Of a step that is not among the `steps` of a folder, which grow.
+    pub fn unknown_step(path: &Path, step: u64, steps: Vec<u64>) -> CheckpointError {
+        let path = path.to_path_buf();
+        match steps.is_empty() {
+            true => CheckpointError::NoSteps { path },
+            false => CheckpointError::UnknownStep { path, step, steps },
+        }
+    }
+
     /// For `map_err` after calls of the operating system.
     pub(crate) fn io(action: &'static str, path: &Path) -> impl FnOnce(io::Error) -> Self + use<> {
         let path = path.to_path_buf();
@@ -205,6 +212,21 @@ impl CheckpointError {
             path: path.to_path_buf(),
             what: what.into(),
         }
+    }
+}
+
+/// First and last of some growing numbers, and those next to one that is not among them.
+fn range_and_nearest(steps: &[u64], step: u64) -> String {
+    let at = steps.partition_point(|&there| there < step);
+    let ends = [steps.first(), steps.last()].map(|end| end.copied().unwrap_or_default());
+    let range = format!("{} to {}", ends[0], ends[1]);
+    match (
+        at.checked_sub(1).and_then(|before| steps.get(before)),
+        steps.get(at),
+    ) {
+        (Some(before), Some(after)) => format!("{range}, the nearest are {before} and {after}"),
+        (Some(one), None) | (None, Some(one)) => format!("{range}, the nearest is {one}"),
+        (None, None) => range,
     }
 }
 

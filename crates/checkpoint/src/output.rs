@@ -112,16 +112,8 @@ impl Output {
     ) -> Result<Resumed, CheckpointError> {
         let dir = lock.dir().to_path_buf();
         let mut steps = committed_steps(&dir)?;
-        let (Some(&first), Some(&newest)) = (steps.first(), steps.last()) else {
-            return Err(CheckpointError::NoSteps { path: dir });
-        };
         if !steps.contains(&last) {
-            return Err(CheckpointError::UnknownStep {
-                path: dir,
-                step: last,
-                first,
-                last: newest,
-            });
+            return Err(CheckpointError::unknown_step(&dir, last, steps));
         }
         let mesh_restored = restore_mesh(&dir, mesh, last)?;
         require_same_mesh(&dir, mesh)?;

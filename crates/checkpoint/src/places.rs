@@ -130,35 +130,37 @@ pub fn all_steps(dir: &Path) -> Result<Vec<u64>, CheckpointError> {
     Ok(steps)
 }
 
-/// Names of the fields over points that a step of the run in `dir` holds, packed or not; no values are read.
-pub fn point_field_names(dir: &Path, step: u64) -> Result<Vec<String>, CheckpointError> {
+/// Where a step of the run in `dir` is; a file of its own counts before a pack.
+fn place_of(dir: &Path, step: u64) -> Result<StepPlace, CheckpointError> {
     let single = StepPlace::single(dir, step);
+    // Also what is there and is no file has its own error where it is read.
+    if single.path.symlink_metadata().is_ok() {
+        return Ok(single);
+    }
     let packed = packs(dir)?.into_iter().find(|(_, steps)| steps.contains(&step));
     match packed {
-        Some((path, _)) if !single.path.exists() => {
-            StepPlace::packed(&path, step).open()?.members(POINT_DATA)
-        }
-        _ => {
-            verify_structure(&single.path)?;
-            single.open()?.members(POINT_DATA)
-        }
+        Some((path, _)) => Ok(StepPlace::packed(&path, step)),
+        None => Err(CheckpointError::unknown_step(dir, step, all_steps(dir)?)),
     }
+}
+
+/// Names of the fields over points that a step of the run in `dir` holds, packed or not; no values are read.
+pub fn point_field_names(dir: &Path, step: u64) -> Result<Vec<String>, CheckpointError> {
+    let place = place_of(dir, step)?;
+    if !place.is_packed() {
+        verify_structure(&place.path)?;
+    }
+    place.open()?.members(POINT_DATA)
 }
 
 /// Reads a step of the run in `dir`, packed or not; every value read is verified.
 pub fn read_any_step(dir: &Path, step: u64) -> Result<StepRecord, CheckpointError> {
-    let single = StepPlace::single(dir, step);
-    let (mut packs, run) = (packs(dir)?.into_iter(), run_of(dir)?);
-    match packs.find(|(_, steps)| steps.contains(&step)) {
-        Some((path, _)) if !single.path.exists() => {
-            let place = StepPlace::packed(&path, step);
-            let file = place.open()?;
-            require_run_in(&file, &path, run.as_deref())?;
-            read_record(&file, &path)
-        }
-        _ => {
-            require_run(&single.path, run.as_deref())?;
-            read_step(&single.path)
-        }
+    let (place, run) = (place_of(dir, step)?, run_of(dir)?);
+    if !place.is_packed() {
+        require_run(&place.path, run.as_deref())?;
+        return read_step(&place.path);
     }
+    let file = place.open()?;
+    require_run_in(&file, &place.path, run.as_deref())?;
+    read_record(&file, &place.path)
 }

@@ -53,7 +53,7 @@ const SCHEMA: u32 = 1;
 #[command(group = clap::ArgGroup::new("what").required(true).args(["dir", "rating", "spectrum", "stress"]))]
 pub struct LifeCommand {
     /// Folder of the results of a finished run.
-    dir: Option<PathBuf>,
+    pub dir: Option<PathBuf>,
     /// Ratings and catalogue life of a scene, without a run.
     #[arg(long, value_name = "SCENE")]
     rating: Option<PathBuf>,

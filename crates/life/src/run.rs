@@ -341,6 +341,15 @@ fn cubic_mean(history: &History, loads: &[BearingLoad], rated: &Rated) -> f64 {
     (sum / way).cbrt()
 }
 
+/// How much longer a life is, by its ratio to the other.
+fn longer(ratio: f64) -> String {
+    match ratio < 10.0 {
+        true => format!("{:.1} % longer", 100.0 * (ratio - 1.0)),
+        false if ratio < 1000.0 => format!("{ratio:.0} times as long"),
+        false => "more than 1000 times as long".to_string(),
+    }
+}
+
 /// What a reader must know of a history.
 fn history_notes(history: &History, exposure: &Exposure) -> Vec<String> {
     let turns = history.turns();
@@ -353,8 +362,8 @@ fn history_notes(history: &History, exposure: &Exposure) -> Vec<String> {
     if turns < WHOLE_TURN && even > (1.0 + NOTABLE) * life {
         notes.push(format!(
             "warning: in less than one turn the positions of a ring that turns may not have met all loads; with even \
-             damage L_10r would be {:.1} % longer, compute a longer history",
-            100.0 * (even / life - 1.0)
+             damage L_10r would be {}, compute a longer history",
+            longer(even / life)
         ));
     }
     notes

@@ -23,13 +23,11 @@ const SHOWN: f64 = 0.08;
 const NOTHING: f64 = 1e-12;
 /// Sides of the circle of a ball.
 const SIDES: usize = 48;
-/// Value of the cell array `body` on the balls.
-const BALLS: u8 = 2;
 const NAMES: [&str; 2] = ["inner ring", "outer ring"];
 
 /// The figure of the chosen step, or of the newest with displacements; none of rings without circles of nodes.
 pub fn figures(results: &Results, step: Option<u64>) -> anyhow::Result<Vec<(String, Figure)>> {
-    if results.balls.is_none() {
+    if !results.may_show_loads() {
         return Ok(Vec::new());
     }
     let Some(step) = step_with_displacement(&results.dir, step)? else {
@@ -111,7 +109,7 @@ struct Disc {
 
 /// The balls across the axis.
 fn balls(grid: &Grid, record: &StepRecord) -> Vec<Disc> {
-    let cells = (0..grid.types.len()).filter(|&i| grid.body[i] == BALLS);
+    let cells = (0..grid.types.len()).filter(|&i| grid.body[i] == raceways::BALLS);
     let ball = |i: usize| {
         let [_, [x, y]] = places(grid, record, grid.cell(i).next()?);
         Some(Disc {

@@ -12,9 +12,10 @@ use super::stress_step::step_with_stress;
 
 /// A figure per raceway: of a sweep a curve per point, else the chosen step.
 pub fn figures(results: &Results, step: Option<u64>) -> anyhow::Result<Vec<(String, Figure)>> {
-    let Some(balls) = &results.balls else {
+    if !results.may_show_loads() {
         return Ok(Vec::new());
-    };
+    }
+    let balls = results.balls.as_ref();
     let steps = all_steps(&results.dir)?;
     let steps: Vec<u64> = match (&results.steps, step) {
         (Steps::Sweep(_), None) => steps,
@@ -32,7 +33,9 @@ pub fn figures(results: &Results, step: Option<u64>) -> anyhow::Result<Vec<(Stri
         let raceways = raceways::raceways(&record)?;
         for ((figure, groove), body) in figures.iter_mut().zip(raceways.grooves).zip([0, 1]) {
             let nodes = raceways::nodes(&grid, &record, &groove);
-            let (ball, azimuth) = raceways::most_loaded(balls, step, &groove)?;
+            let Some((ball, azimuth)) = raceways::most_loaded(balls, (&grid, &record), &groove)? else {
+                continue;
+            };
             let points: Vec<DataPoint> = raceways::rows(&nodes)
                 .into_iter()
                 .map(|(key, row)| {

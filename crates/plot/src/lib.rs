@@ -38,7 +38,7 @@ use clap::Args;
 use comm::print;
 use figure::Figure;
 use results::answer;
-use results::failure::Failure;
+use results::failure::{Failure, one_line};
 use results::folder::say_later;
 use results::integrity::warn_of_doubts;
 use results::whole::{make_output_folder, require_own_picture, write_picture};
@@ -46,13 +46,13 @@ use results::whole::{make_output_folder, require_own_picture, write_picture};
 pub use choice::Choice;
 pub use named::Named;
 pub use quantity::AxisUnit;
-pub use run::{Results, Steps, swept_column};
+pub use run::{Results, Steps, has_tables, swept_column};
 
 /// What the command line asks for.
 #[derive(Debug, Args)]
 pub struct Plot {
     /// Folder of the results.
-    dir: PathBuf,
+    pub dir: PathBuf,
     /// Folder of the figures; default: figures in the folder of the results. Figures in it are replaced.
     #[arg(long)]
     out: Option<PathBuf>,
@@ -100,8 +100,9 @@ pub fn plot(request: &Plot) -> Result<(), Failure> {
     answer::add("folder", &out);
     answer::add("figures", &names);
     print::line(format_args!(
-        "{} figures as svg and png in {}: {}",
+        "{} {} as svg and png in {}: {}",
         names.len(),
+        if names.len() == 1 { "figure" } else { "figures" },
         out.display(),
         names.join(", ")
     ));
@@ -186,7 +187,7 @@ pub fn figures(dir: &Path, choice: &Choice) -> Result<Figures, Failure> {
             Ok(made) => drawn.extend(made),
             Err(error) if is_chosen => return Err(error.into()),
             Err(error) => {
-                problems.push(format!("figures of {group}: {error:#}"));
+                problems.push(format!("figures of {group}: {}", one_line(&error)));
                 first.get_or_insert(error);
             }
         }

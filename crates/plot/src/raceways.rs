@@ -13,6 +13,9 @@ use scene::{MeshFiles, Scene, geometry};
 
 use super::quantity::DEGREE;
 
+/// Value of the cell array `body` on the balls.
+pub const BALLS: u8 = 2;
+
 /// How far a node may lie off the torus, in groove radii: meshes are exact to rounding in their files.
 const ON_TORUS: f64 = 1e-4;
 
@@ -150,8 +153,35 @@ pub fn at_azimuth(row: &[RacewayNode], azimuth: f64) -> f64 {
 /// Forces that differ by less, relative to the largest, are equal: round-off does not choose the ball.
 const EQUAL: f64 = 1e-6;
 
-/// The first of the balls with the largest force on a raceway in a step, and its azimuth, deg.
-pub fn most_loaded(table: &Table, step: u64, groove: &Groove) -> anyhow::Result<(usize, f64)> {
+/// The first of the balls with the largest force on a raceway in a step, and its azimuth, deg: by the table of balls,
+/// or without it by the forces in the step file. None if no ball is loaded there.
+pub fn most_loaded(
+    table: Option<&Table>,
+    (grid, record): (&Grid, &StepRecord),
+    groove: &Groove,
+) -> anyhow::Result<Option<(usize, f64)>> {
+    match table {
+        Some(table) => most_loaded_row(table, record.step, groove).map(Some),
+        None => Ok(most_loaded_point(grid, record, groove.side)),
+    }
+}
+
+fn most_loaded_point(grid: &Grid, record: &StepRecord, side: Side) -> Option<(usize, f64)> {
+    let points = &record.points;
+    let forces = side.choose(&points.force_inner, &points.force_outer).as_ref()?;
+    let cells = (0..grid.body.len()).filter(|&cell| grid.body[cell] == BALLS);
+    let balls: Vec<usize> = cells.filter_map(|cell| grid.cell(cell).next()).collect();
+    let force = |&point: &usize| forces[point].iter().map(|f| f * f).sum::<f64>().sqrt();
+    let largest = balls.iter().map(force).fold(0.0, f64::max);
+    let ball = balls
+        .iter()
+        .position(|point| largest > 0.0 && force(point) >= largest * (1.0 - EQUAL))?;
+    let (x, u) = (grid.points[balls[ball]], points.displacement[balls[ball]]);
+    let azimuth = (x[1] + u[1]).atan2(x[0] + u[0]);
+    Some((ball, (azimuth * DEGREE.factor).rem_euclid(360.0)))
+}
+
+fn most_loaded_row(table: &Table, step: u64, groove: &Groove) -> anyhow::Result<(usize, f64)> {
     let force = table.column(&format!("{}_force_n", groove.side.name()))?;
     let (steps, ball, azimuth) = (
         table.column("step")?,

@@ -11,6 +11,11 @@ use results::table::Table;
 /// Forces of balls, a row for each at every step.
 const BALLS: &str = "balls.csv";
 
+/// Tables of a run, by the rows of which its figures and others are made.
+const TABLES: [&str; 4] = [BALLS, "shaft.csv", "energy.csv", "probes.csv"];
+/// Natural modes, a row for each.
+const MODES: &str = "modes.csv";
+
 /// Tables of a run and what its steps are.
 pub struct Results {
     /// Folder.
@@ -47,8 +52,7 @@ impl Results {
                 dir.display()
             ));
         }
-        let [balls, shaft, energy, probes] =
-            [BALLS, "shaft.csv", "energy.csv", "probes.csv"].map(|name| Table::read(dir, name));
+        let [balls, shaft, energy, probes] = TABLES.map(|name| Table::read(dir, name));
         let (balls, shaft, energy, probes) = (balls?, shaft?, energy?, probes?);
         // Tables of a run agree on what its steps are: the first that is there tells.
         let tables = [&balls, &shaft, &energy, &probes];
@@ -61,6 +65,11 @@ impl Results {
             energy,
             probes,
         })
+    }
+
+    /// Whether step files may show a load: those of natural modes hold shapes.
+    pub fn may_show_loads(&self) -> bool {
+        self.balls.is_some() || !self.dir.join(MODES).exists()
     }
 
     /// What the steps are plotted against: the axis, and its value for each row of `table`; none for a single step.
@@ -86,6 +95,14 @@ impl Results {
             Some((axis, values)) => row.map_or_else(|| format!("step {step}"), |row| axis.value(values[row])),
         })
     }
+}
+
+/// Whether a folder has tables of a run: they are read without its other files, too.
+pub fn has_tables(dir: &Path) -> bool {
+    TABLES
+        .into_iter()
+        .chain([MODES])
+        .any(|name| dir.join(name).exists())
 }
 
 /// The axis of the swept values in a column of a table, and the places of its rows on it. Words have no place on an

@@ -16,9 +16,10 @@ const SIZE: (u32, u32) = (820, 480);
 
 /// A figure per ring of the chosen step; none if it has no nodal stress.
 pub fn figures(results: &Results, step: Option<u64>) -> anyhow::Result<Vec<(String, Figure)>> {
-    let Some(balls) = &results.balls else {
+    if !results.may_show_loads() {
         return Ok(Vec::new());
-    };
+    }
+    let balls = results.balls.as_ref();
     let Some(step) = step_with_stress(&results.dir, step)? else {
         return Ok(Vec::new());
     };
@@ -37,7 +38,9 @@ pub fn figures(results: &Results, step: Option<u64>) -> anyhow::Result<Vec<(Stri
     let raceways = raceways::raceways(&record)?;
     let mut figures = Vec::new();
     for (groove, body) in raceways.grooves.into_iter().zip([0, 1]) {
-        let (ball, azimuth) = raceways::most_loaded(balls, step, &groove)?;
+        let Some((ball, azimuth)) = raceways::most_loaded(balls, (&grid, &record), &groove)? else {
+            continue;
+        };
         let triangles = cut::at_azimuth(&grid, &moved, von_mises, body, azimuth / DEGREE.factor);
         let is_known = |triangle: &Triangle| triangle.values.iter().any(|value| !value.is_nan());
         if !triangles.iter().any(is_known) {
@@ -51,12 +54,14 @@ pub fn figures(results: &Results, step: Option<u64>) -> anyhow::Result<Vec<(Stri
             .axis("von Mises stress")
             .including(0.0)
             .including(largest);
-        let figure = Figure::new(title, MILLIMETRE.axis("z"), MILLIMETRE.axis("radius"))
+        let mut figure = Figure::new(title, MILLIMETRE.axis("z"), MILLIMETRE.axis("radius"))
             .size(SIZE.0, SIZE.1)
             .equal_scales()
             .note(raceways.note)
-            .surface(Surface::of_triangles(value, in_figure(&triangles)))
-            .series(contact(balls, step, ball, &groove)?);
+            .surface(Surface::of_triangles(value, in_figure(&triangles)));
+        if let Some(balls) = balls {
+            figure = figure.series(contact(balls, step, ball, &groove)?);
+        }
         figures.push((format!("section_{side}"), figure));
     }
     Ok(figures)

@@ -26,9 +26,10 @@ const CORNERS: usize = 48;
 
 /// A figure per raceway of the chosen step; none if it has no nodal stress.
 pub fn figures(results: &Results, choice: &Choice) -> anyhow::Result<Vec<Named>> {
-    let Some(balls) = &results.balls else {
+    if !results.may_show_loads() {
         return Ok(Vec::new());
-    };
+    }
+    let balls = results.balls.as_ref();
     let Some(step) = step_with_stress(&results.dir, choice.step)? else {
         return Ok(Vec::new());
     };
@@ -53,7 +54,7 @@ fn unrolled(
     nodes: &[RacewayNode],
     largest: f64,
     groove: &Groove,
-    (balls, step): (&Table, u64),
+    (balls, step): (Option<&Table>, u64),
 ) -> anyhow::Result<Named> {
     let side = groove.side.name();
     let arc = |angle: f64| 1e3 * groove.groove_radius * angle.to_radians();
@@ -84,12 +85,17 @@ fn unrolled(
         .including(0.0)
         .including(largest * MEGAPASCAL.factor);
     let y_edges = y_edges.into_iter().map(arc).collect();
-    let title = format!("Stress of the {side} raceway with the contact ellipses, step {step}");
+    let ellipses = balls.map(|balls| ellipses(groove, &(arc(low)..=arc(high)), (balls, step)));
+    let with = match ellipses.is_some() {
+        true => " with the contact ellipses",
+        false => "",
+    };
+    let title = format!("Stress of the {side} raceway{with}, step {step}");
     let y_axis = Axis::linear("arc of the groove from its bottom", "mm").tight();
     let mut figure = Figure::new(title, azimuth_axis(), y_axis)
         .surface(Surface::new(value_axis, x_edges, y_edges, values)?)
         .size(900, 400);
-    for (look, ellipse) in ellipses(groove, &(arc(low)..=arc(high)), (balls, step))? {
+    for (look, ellipse) in ellipses.transpose()?.unwrap_or_default() {
         let name = match look {
             Look::BrokenOutline => "ellipse at an edge or over a profile: not Hertz's",
             _ => "contact ellipse",

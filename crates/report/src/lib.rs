@@ -24,7 +24,7 @@ use results::whole;
 #[derive(Debug, Args)]
 pub struct Report {
     /// Folder of the results.
-    dir: PathBuf,
+    pub dir: PathBuf,
     /// File of the page; default: report.html in the folder of the results. It is replaced.
     #[arg(long)]
     out: Option<PathBuf>,

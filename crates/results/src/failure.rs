@@ -25,7 +25,7 @@ pub enum Failure {
 }
 
 /// An error and its causes; a cause that is said already is not said again.
-fn one_line(error: &anyhow::Error) -> String {
+pub fn one_line(error: &anyhow::Error) -> String {
     let mut text = error.to_string();
     for cause in error.chain().skip(1).map(ToString::to_string) {
         if !text.contains(&cause) {

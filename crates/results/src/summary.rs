@@ -1,7 +1,7 @@
 //! `summary.json`: the key numbers of a run, for scripts. Schema 1; SI units in the names of the keys.
 
 use std::collections::BTreeMap;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use anyhow::Context;
 use checkpoint::open_regular;
@@ -339,6 +339,16 @@ pub fn write_summary(dir: &Path, summary: &impl Serialize) -> anyhow::Result<()>
     let path = dir.join(SUMMARY_FILE);
     let text = serde_json::to_string_pretty(summary).context("cannot format summary.json")? + "\n";
     whole::write(&path, text.as_bytes(), |old| whole::holds(old, "\"schema\""))
+}
+
+/// The scene file of a run in `dir` by the name that it was given in full, as the summary has it; else `path`.
+pub fn scene_as_named(dir: &Path, path: PathBuf) -> PathBuf {
+    let named = || {
+        let named = PathBuf::from(read_summary(dir)?["scene"].as_str()?);
+        let is_it = named.is_absolute() && named.canonicalize().ok()? == path.canonicalize().ok()?;
+        is_it.then_some(named)
+    };
+    named().unwrap_or(path)
 }
 
 /// What the summary of a bearing says of bodies that the files of another one show.

@@ -33,7 +33,7 @@ pub use spall_length::{SpallLengthCommand, spall_length};
 #[command(name = "spectrum")]
 pub struct SpectrumCommand {
     /// Folder of the results of a motion.
-    dir: PathBuf,
+    pub dir: PathBuf,
     /// Column of probes.csv or shaft.csv, or a probe that has only one column.
     #[arg(long)]
     probe: String,

@@ -23,7 +23,7 @@ use crate::{require_folder, require_motion, scene_of};
 #[derive(Debug, Args)]
 pub struct SpallLengthCommand {
     /// Folder of the results of a motion.
-    dir: PathBuf,
+    pub dir: PathBuf,
     /// The ring with the spall.
     #[arg(long, value_parser = ["inner", "outer"])]
     ring: String,

@@ -222,7 +222,7 @@ fn resuming_needs_the_step_and_the_mesh() {
     };
     assert!(resume(&bodies(), 0).contains("holds no committed step"));
     write_steps(dir.path(), 1..4);
-    assert!(resume(&bodies(), 7).contains("has no step 7; committed steps are 1 to 3"));
+    assert!(resume(&bodies(), 7).contains("has no step 7; committed steps are 1 to 3, the nearest is 3"));
     let mut other = bodies();
     other[1].points[0][2] += 1e-9;
     let text = resume(&other, 3);

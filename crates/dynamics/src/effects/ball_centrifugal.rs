@@ -9,7 +9,7 @@
 use serde::Deserialize;
 
 use super::loads::{Loads, Now};
-use super::rules::{Case, judge, percent};
+use super::rules::{Case, judge, newtons, share_of};
 use super::table::{self, About, Setting, SpeedRole, Trial};
 use crate::balls::BallResult;
 use crate::error::DynamicsError;
@@ -46,8 +46,9 @@ impl table::EffectTable for BallCentrifugalTable {
         let force = case.centrifugal_force();
         let ratio = force / load;
         let estimate = format!(
-            "the centrifugal force of a ball, m r omega_c^2 = {force:.3} N, is {} of its load of about {load:.0} N",
-            percent(ratio),
+            "the centrifugal force of a ball, m r omega_c^2 = {force:.3} N, is {} of about {}",
+            share_of(ratio, "its load"),
+            newtons(load)
         );
         judge("ball_centrifugal", table.is_some(), ratio, &estimate)
     }
@@ -111,12 +112,12 @@ impl Effect for BallCentrifugal {
             let degrees = [balls[ball].inner, balls[ball].outer].map(|c| c.contact_angle_rad.to_degrees());
             format!(
                 "ball {ball} rolls at contact angles of {:.1} deg inside and {:.1} deg outside, which would change its \
-                 centrifugal force by {:+.1} %, or {:.1} % of its contact force: the cage has the speed of the free \
-                 contact angle; speed.ball_speeds = \"outer_control\" gives each ball that of its own angles",
+                 centrifugal force by {:+.1} %, or {}: the cage has the speed of the free contact \
+                 angle; speed.ball_speeds = \"outer_control\" gives each ball that of its own angles",
                 degrees[0],
                 degrees[1],
                 100.0 * change,
-                100.0 * error
+                share_of(error, "its contact force")
             )
         })
     }

@@ -10,7 +10,7 @@ use input::{DENSITY, Problems, Quantity};
 use serde::Deserialize;
 
 use super::loads::{Loads, Now};
-use super::rules::{Case, judge, percent};
+use super::rules::{Case, judge, newtons, share_of};
 use super::table::{self, About, Context, Setting, SpeedRole};
 use crate::error::DynamicsError;
 use crate::kinematics::BothRings;
@@ -59,8 +59,9 @@ impl table::EffectTable for BallDragTable {
         let force = table.drag().coefficient(case.model) * speed * speed;
         let ratio = force / (USUAL_FRICTION * load);
         let estimate = format!(
-            "the drag of a ball, {force:.3} N, is {} of the friction of its load of about {load:.0} N",
-            percent(ratio)
+            "the drag of a ball, {force:.3} N, is {} of about {}",
+            share_of(ratio, "the friction of its load"),
+            newtons(load)
         );
         judge("ball_drag", true, ratio, &estimate)
     }

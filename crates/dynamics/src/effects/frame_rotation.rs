@@ -31,7 +31,7 @@ use input::Problems;
 use serde::Deserialize;
 
 use super::loads::{FrameTurn, Loads, Now};
-use super::rules::{Case, judge, judge_key, percent};
+use super::rules::{Case, judge, judge_key, share_of};
 use super::table::{self, About, Context, Need, Setting, SpeedRole, Trial};
 use crate::error::DynamicsError;
 use crate::kinematics::RingSpeeds;
@@ -92,10 +92,10 @@ impl table::EffectTable for FrameRotationTable {
         let approach = case.approach();
         let ratio = growth * case.contact_angle().cos() / approach;
         let estimate = format!(
-            "the turning {} ring grows by {formula} = {:.4} um, {} of the Hertz approach of about {:.2} um",
+            "the turning {} ring grows by {formula} = {:.4} um, {} of about {:.2} um",
             side.name(),
             1e6 * growth,
-            percent(ratio),
+            share_of(ratio, "the Hertz approach"),
             1e6 * approach
         );
         let mut advice = judge("frame_rotation", table.is_some(), ratio, &estimate);
@@ -144,11 +144,10 @@ fn stiffening_advice(table: Option<&FrameRotationTable>, case: &Case<'_>) -> Vec
     };
     let ratio = OVAL_SHARE * share;
     let estimate = format!(
-        "the stress of the turning {} ring holds 3 rho omega^2 r^4 / (E h^2) = {} of what bends it oval, about {} of \
-         a ball force",
+        "the stress of the turning {} ring holds 3 rho omega^2 r^4 / (E h^2) = {}, about {}",
         side.name(),
-        percent(share),
-        percent(ratio)
+        share_of(share, "what bends it oval"),
+        share_of(ratio, "a ball force")
     );
     judge_key(
         "effects.frame_rotation.stress_stiffening",

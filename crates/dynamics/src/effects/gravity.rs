@@ -19,7 +19,7 @@ use input::{ACCELERATION, Problems, Quantity, RawSchedule, Schedule, check_sched
 use serde::Deserialize;
 
 use super::loads::{Loads, Now, RingWeight};
-use super::rules::{Case, judge, percent};
+use super::rules::{Case, judge, share_of};
 use super::table::{self, About, Context, Setting, SpeedRole, Trial};
 use crate::error::DynamicsError;
 use crate::model::{Effect, Model};
@@ -89,8 +89,8 @@ impl table::EffectTable for GravityTable {
         let weight = (rotor + case.n_balls() * case.model.ball_mass()) * EARTH;
         let ratio = weight / load;
         let estimate = format!(
-            "shaft, inner ring and balls weigh about m g = {weight:.1} N, {} of the load",
-            percent(ratio)
+            "shaft, inner ring and balls weigh about m g = {weight:.1} N, {}",
+            share_of(ratio, "the load")
         );
         judge("gravity", table.is_some(), ratio, &estimate)
     }

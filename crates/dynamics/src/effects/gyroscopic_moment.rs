@@ -42,7 +42,7 @@ use input::Problems;
 use serde::Deserialize;
 
 use super::loads::{Loads, Now};
-use super::rules::{Case, judge, percent};
+use super::rules::{Case, judge, share_of};
 use super::table::{self, About, Context, Setting, SpeedRole, Trial};
 use crate::error::DynamicsError;
 use crate::kinematics::SlipRatios;
@@ -121,9 +121,9 @@ impl table::EffectTable for GyroscopicMomentTable {
         let moment = inertia * case.gyroscopic_rate() * case.contact_angle().sin();
         let ratio = 2.0 * moment / (diameter * load);
         let estimate = format!(
-            "the gyroscopic moment of a ball, J omega_b omega_c sin a = {moment:.2e} N m, asks for 2 M_g / D_w = {} of \
-             its load as friction",
-            percent(ratio)
+            "the gyroscopic moment of a ball, J omega_b omega_c sin a = {moment:.2e} N m, asks for 2 M_g / D_w = {} \
+             as friction",
+            share_of(ratio, "its load")
         );
         let mut lines = judge("gyroscopic_moment", table.is_some(), ratio, &estimate);
         let hold = HOLD * load * diameter;

@@ -149,12 +149,52 @@ pub fn judge_key(key: &str, is_on: bool, ratio: f64, estimate: &str) -> Vec<Stri
     Vec::new()
 }
 
-/// A ratio in per cent.
-pub fn percent(ratio: f64) -> String {
+/// Ratio from which a share is said as so many times the whole.
+const TIMES: f64 = 10.0;
+/// Ratio beyond which the number says no more: the whole is next to nothing.
+const MOST_TIMES: f64 = 1000.0;
+
+/// A ratio as a share of something, such as "12.5 % of the load", or "20 times the load".
+pub fn share_of(ratio: f64, whole: &str) -> String {
+    if ratio > MOST_TIMES {
+        return format!("more than {MOST_TIMES} times {whole}");
+    }
+    if ratio >= TIMES {
+        return format!("{ratio:.0} times {whole}");
+    }
     let p = 100.0 * ratio;
-    if p >= 0.1 {
-        format!("{p:.1} %")
-    } else {
-        format!("{p:.1e} %")
+    match p >= 0.1 {
+        true => format!("{p:.1} % of {whole}"),
+        false => format!("{p:.1e} % of {whole}"),
+    }
+}
+
+/// A load for people, such as "330 N"; a small one keeps two digits.
+pub fn newtons(load: f64) -> String {
+    match load >= 1.0 {
+        true => format!("{load:.0} N"),
+        false => format!("{load:.1e} N"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Wrong: next to a load of almost nothing a share would be a row of digits that nobody can read.
+    #[test]
+    fn shares_are_readable_at_every_size() {
+        let cases = [
+            (5e-5, "5.0e-3 % of the load"),
+            (0.125, "12.5 % of the load"),
+            (9.99, "999.0 % of the load"),
+            (20.2, "20 times the load"),
+            (8.6e11, "more than 1000 times the load"),
+            (f64::INFINITY, "more than 1000 times the load"),
+        ];
+        for (ratio, expected) in cases {
+            assert_eq!(share_of(ratio, "the load"), expected);
+        }
+        assert_eq!([newtons(331.7), newtons(2.04e-9)], ["332 N", "2.0e-9 N"]);
     }
 }

@@ -24,7 +24,7 @@ use input::{ANGLE, LENGTH, MASS, Problems, Quantity};
 use serde::Deserialize;
 
 use super::loads::{Loads, Now};
-use super::rules::{Case, PeakLoad, judge, percent};
+use super::rules::{Case, PeakLoad, judge, share_of};
 use super::table::{self, About, Context, Need, Setting, SpeedRole, Trial};
 use crate::error::DynamicsError;
 use crate::kinematics::Speed;
@@ -100,7 +100,7 @@ impl table::EffectTable for UnbalanceTable {
             ),
         };
         let ratio = force / load;
-        let estimate = format!("{formula} {force:.2} N, {} of the load", percent(ratio));
+        let estimate = format!("{formula} {force:.2} N, {}", share_of(ratio, "the load"));
         judge("unbalance", table.is_some(), ratio, &estimate)
     }
 

@@ -48,8 +48,8 @@ fn circle(azimuth: f64, radius: f64, is_projected: bool) -> Circle {
     }
 }
 
-/// Force of the inner ring on a ball along e_psi, N, where the ball presses it with `on_ring`, N, in its meridian plane,
-/// on a shaft at these displacements, m and rad; None where grooves are projected.
+/// Force of the inner ring on a ball along e_psi, N, where the ball presses it with `on_ring`, N, in the meridian
+/// plane, on a shaft at these displacements, m and rad; None where grooves are projected.
 pub fn across_on_ball(model: &Model, azimuth: f64, shaft: &[f64; 5], on_ring: Meridian) -> Option<f64> {
     let radius = model.geometry.centre_radius(Side::Inner);
     let at = CarriedCircle::COORDINATES.map(|k| shaft[k]);

@@ -43,7 +43,7 @@ pub enum SceneError {
     /// A list of bearings where one is expected.
     #[error(
         "{} has a list of bearings on one shaft, which this command does not take yet; expected one table [bearing]. \
-         Lists are for raceway run, check, mesh, stiffness, campbell, plot and report",
+         Lists are for raceway run, resume, check, mesh, info, export, stiffness, campbell, plot and report",
         path.display()
     )]
     Several {

@@ -113,6 +113,31 @@ fn place_of(document: &DeTable<'_>, key: &str) -> Option<Range<usize>> {
     Some(place)
 }
 
+/// Whether a stretch of a text, in bytes, is where a dotted key stands, or in its value. A table of a list is reached
+/// by its number from 0.
+pub fn is_at(text: &str, key: &str, at: &Range<usize>) -> bool {
+    let Ok(document) = DeTable::parse(text) else {
+        return false;
+    };
+    let mut names = key.split('.').map(str::trim);
+    let mut found = names.next().and_then(|name| entry(document.get_ref(), name));
+    for name in names {
+        found = found.and_then(|(_, value)| match value.get_ref() {
+            DeValue::Table(table) => entry(table, name),
+            DeValue::Array(list) => {
+                let item = list.get(name.parse::<usize>().ok()?)?;
+                Some((item.span().start..item.span().start, item))
+            }
+            _ => None,
+        });
+    }
+    found.is_some_and(|(place, value)| {
+        // The value of a table in parts is its heading, which stands before the keys.
+        let within = |stretch: &Range<usize>| stretch.start <= at.start && at.end <= stretch.end;
+        within(&place) || (value.get_ref().as_table().is_none() && within(&value.span()))
+    })
+}
+
 /// Short names of keys.
 const SHORT: [(&str, &str); 3] = [
     ("bore_diameter", "bore"),

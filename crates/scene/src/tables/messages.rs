@@ -37,6 +37,22 @@ impl Messages<'_> {
         keys.into_iter().any(|(key, _)| problem.starts_with(key.trim()))
     }
 
+    /// The `--set` argument that gives what stands in a stretch of the text; of several the last, which wins.
+    fn giver(&self, text: &str, at: &Range<usize>) -> Option<&String> {
+        let line = text.get(..at.start)?.matches('\n').count();
+        let is_typed = || {
+            let line = text.lines().nth(line);
+            self.whole.text.lines().any(|typed| Some(typed) == line)
+        };
+        let gives = |argument: &&String| {
+            let key = argument.split_once('=').map_or("", |(key, _)| key.trim());
+            // Tables on the way to a key that are not in the files have come with it.
+            let mut tables = key.match_indices('.').map(|(end, _)| &key[..end]);
+            locate::is_at(text, key, at) || tables.any(|table| locate::is_at(text, table, at)) && !is_typed()
+        };
+        self.overrides.iter().rev().find(gives)
+    }
+
     /// What a text says as tables of a scene.
     pub fn read<T: DeserializeOwned>(&self, text: &str) -> Result<T, SceneError> {
         self.read_beside(text, |_| None)
@@ -71,7 +87,14 @@ impl Messages<'_> {
     }
 
     fn format_error(&self, text: &str, span: Option<Range<usize>>, message: &str) -> SceneError {
+        let argument = span.clone().and_then(|span| self.giver(text, &span));
         let located = locate::locate(text, span, message);
+        if let Some(argument) = argument {
+            return SceneError::Override {
+                argument: argument.clone(),
+                reason: located.message,
+            };
+        }
         let place = self.whole.place_in(text, located.line);
         SceneError::Format {
             path: place.path.to_path_buf(),

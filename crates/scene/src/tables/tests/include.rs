@@ -289,3 +289,37 @@ fn files_include_files_and_circles_are_refused() {
         );
     }
 }
+
+/// Wrong: who mistypes a `--set` would look for it in a file, on a line that says something else.
+#[test]
+fn a_wrong_override_of_an_included_value_is_that_of_the_command_line() {
+    let [kind, rest] = halves();
+    let files = Files::new("overridden", &[("scene.toml", &rest), ("types/kind.toml", &kind)]);
+    let cases = [
+        (
+            "bearing.ball_diameter=9",
+            "bearing.ball_diameter: 9 is a number without a unit",
+        ),
+        (
+            "bearing.ball_diametr=9 mm",
+            "unknown key \"ball_diametr\" in [bearing]",
+        ),
+        (
+            "effects.axial_force.value=2",
+            "effects.axial_force.value: 2 is a number without a unit",
+        ),
+    ];
+    for (argument, problem) in cases {
+        // What the command line gives besides, and gives rightly, is not named.
+        let message = files.message("scene.toml", &["bearing.balls=17", argument]);
+        assert!(
+            message.starts_with(&format!("--set {argument:?}: {problem}")),
+            "{message}"
+        );
+    }
+    // A mistake in the file stays one of the file.
+    let typed = kind.replacen("ball_diameter = \"9 mm\"", "ball_diameter = 9", 1);
+    std::fs::write(files.0.join("types/kind.toml"), typed).unwrap();
+    let message = files.message("scene.toml", &["bearing.balls=17"]);
+    assert!(message.starts_with("types/kind.toml:"), "{message}");
+}

@@ -107,7 +107,14 @@ fn bad_overrides_are_refused_with_their_text() {
             "bearing.bals=17",
             "unknown key \"bals\" in [bearing]; did you mean \"balls\"?",
         ),
-        ("bearing.bals=17", "(with --set \"bearing.bals=17\")"),
+        (
+            "bearing.bals=17",
+            "--set \"bearing.bals=17\": unknown key \"bals\"",
+        ),
+        (
+            "effects.wind.value=3 N",
+            "--set \"effects.wind.value=3 N\": unknown key \"wind\" in [effects]",
+        ),
         (
             "bearing=17",
             "bearing: invalid type: integer `17`, expected the table [bearing]",

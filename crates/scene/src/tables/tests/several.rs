@@ -219,7 +219,7 @@ fn commands_for_one_bearing_name_those_for_lists() {
     assert!(
         text.ends_with(
             "has a list of bearings on one shaft, which this command does not take yet; expected one table [bearing]. \
-             Lists are for raceway run, check, mesh, stiffness, campbell, plot and report"
+             Lists are for raceway run, resume, check, mesh, info, export, stiffness, campbell, plot and report"
         ),
         "{text}"
     );
