@@ -13,11 +13,13 @@ use crate::effects::Loads;
 use crate::interactions::cage::land::LandStep;
 use crate::interactions::cage::links::CageLinks;
 use crate::interactions::cage::pocket::PocketStep;
-use crate::interactions::free_contact::{Carrier, FreeContacts};
+use crate::interactions::free_contact::{Carrier, FreeContacts, GROOVE_LENGTH};
 use crate::interactions::raceway_contact::{GrooveBodies, Means, RacewayContacts, Site, SiteState};
 use crate::interactions::seat_spring::{Seat, SeatSpring};
 use crate::model::Model;
-use crate::system::{CarriedCircle, ElasticPorts, Interaction, Interval, Lengths, Lumped, System};
+use crate::system::{
+    CarriedCircle, CircleLengths, ElasticPorts, Interaction, Interval, Lengths, Lumped, System,
+};
 
 /// Number of the shaft among the lumped bodies.
 pub const SHAFT: usize = 0;
@@ -135,9 +137,22 @@ impl BearingParts {
             (None, Some(body)) => Carrier::Lumped(body),
             (None, None) => Carrier::AtRest,
         });
+        // A rigid ring moves as what carries it, without a linear part.
+        let is_linear = self.rings[0].is_some() && self.bends();
+        let sites = &self.contacts.sites;
+        let finite = |index: usize| {
+            let site = sites
+                .get(index)
+                .filter(|site| is_linear && site.side.choose(true, false))?;
+            Some(CarriedCircle {
+                carrier: SHAFT,
+                circle: site.circle(),
+                lengths: CircleLengths::OfCircle(GROOVE_LENGTH),
+            })
+        };
         self.free = free;
         if let Some(free) = &mut self.free {
-            free.contacts.connect(FIRST_BALL, carriers);
+            free.contacts.connect(FIRST_BALL, carriers, finite);
         }
         self
     }

@@ -21,7 +21,8 @@ use crate::model::Model;
 use crate::mounting::Mounting;
 use crate::surfaces::{Strips, SurfacePlace};
 use crate::system::{
-    BodyId, CarriedCircle, Character, Interaction, Lengths, Link, LinkForces, LinkRows, LinkTerm,
+    BodyId, CarriedCircle, Character, CircleLengths, Interaction, Lengths, Link, LinkForces, LinkRows,
+    LinkTerm,
 };
 
 /// One ball on one raceway.
@@ -427,6 +428,7 @@ fn link(sites: &BallSites, ball: usize, rings: &[GrooveBodies; 2]) -> Link {
     let finite = rings[Side::Inner.index()].finite.map(|carrier| CarriedCircle {
         carrier,
         circle: sites[Side::Inner.index()].circle(),
+        lengths: CircleLengths::FromCircle,
     });
     Link { reach, terms, finite }
 }

@@ -28,6 +28,7 @@ use crate::interactions::steady_rolling::{SteadyRolling, pure_rolling, rolling_s
 use crate::interactions::traction::creep::RollingContact;
 use crate::interactions::traction::{Ellipse, Traction};
 use crate::model::Model;
+use crate::system::CarriedCircle;
 
 /// Acceleration by which the least force of a contact is a weight, m/s^2: what opens has no size of its own.
 const EARTH: f64 = 9.81;
@@ -94,7 +95,7 @@ impl Motion<'_> {
         let fall = self.fall(span);
         let rings = Side::BOTH.map(|side| {
             let step = rings[side.index()].as_deref();
-            self.ring_steps((state, free), span, side, step)
+            self.ring_steps((state, free), span, (side, sites), step)
         });
         let contact = |(index, site): (usize, &Site)| {
             let ring = rings[index % 2][index / 2];
@@ -192,7 +193,7 @@ impl Motion<'_> {
         &self,
         (state, free): (&MotionState, &FreeState),
         span: PartSpan,
-        side: Side,
+        (side, sites): (Side, &[Site]),
         step: Option<&(dyn ElasticStep + '_)>,
     ) -> Vec<RingStep> {
         let Some(step) = step else {
@@ -201,14 +202,31 @@ impl Motion<'_> {
         let answer = step.answer();
         let courses = free.courses.iter().skip(side.index()).step_by(2);
         let contacts = answer.start.as_chunks().0.iter().zip(answer.seen.as_chunks().0);
-        let of_contact = contacts.zip(courses).map(|((start, seen), course)| RingStep {
-            elastic: Some(ElasticPlace {
-                start: *start,
-                slope: course.expected_slope(*seen, span.dt),
-            }),
-            ..self.turning_step(side, span)
+        let sites = sites.iter().skip(side.index()).step_by(2);
+        let of_contact = contacts.zip(courses).zip(sites);
+        let of_contact = of_contact.map(|(((start, seen), course), site)| {
+            let slope = course.expected_slope(*seen, span.dt);
+            let more = self.finite_slope(state, span, site);
+            RingStep {
+                elastic: Some(ElasticPlace {
+                    start: *start,
+                    slope: (Meridian::from(slope) + more).to_array(),
+                }),
+                ..self.turning_step(side, span)
+            }
         });
         of_contact.collect()
+    }
+
+    /// Growth of a groove's motion with the azimuth that its ring's motion does not have, which is linear in the tilts
+    /// of the shaft: in the middle of a part, m/rad.
+    fn finite_slope(&self, state: &MotionState, span: PartSpan, site: &Site) -> Meridian {
+        if site.side.choose(false, true) {
+            return Meridian::default();
+        }
+        let half = 0.5 * span.dt;
+        let at = CarriedCircle::COORDINATES.map(|k| state.shaft[k] + half * state.shaft_velocity[k]);
+        Meridian::from(site.circle().along(at).map(|growth| -growth))
     }
 
     /// Goes on with the course of the contacts of free balls on a ring, whose motion is `end` at the end of a part.

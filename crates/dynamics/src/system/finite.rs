@@ -36,6 +36,8 @@ pub type Curvature = [[f64; N_FINITE]; N_FINITE];
 const GAUSS: [f64; 2] = [0.211_324_865_405_187_1, 0.788_675_134_594_812_9];
 /// Step of a difference quotient of slopes, rad, and of a displacement over the radius.
 const DIFFERENCE: f64 = 1e-6;
+/// Half of the azimuth over which lengths are compared, rad: right to its square, 1e-6 of what they add to a slope.
+const ALONG: f64 = 1e-3;
 /// t^2 below which the functions of the angle are taken by their series.
 const SMALL: f64 = 0.25;
 /// Displacement over the radius beyond which a circle goes on straight; far beyond that of any bearing.
@@ -48,6 +50,17 @@ pub struct CarriedCircle {
     pub carrier: usize,
     /// The circle.
     pub circle: Circle,
+    /// Lengths of the link that have its motion.
+    pub lengths: CircleLengths,
+}
+
+/// Which lengths of a link have the motion of a circle.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum CircleLengths {
+    /// The first two: from the circle.
+    FromCircle,
+    /// This one and the next: how far the circle moves, which grows against the first.
+    OfCircle(usize),
 }
 
 /// A circle at an azimuth.
@@ -85,6 +98,14 @@ impl FiniteMotion {
 impl CarriedCircle {
     /// Numbers of the coordinates among those of the body.
     pub const COORDINATES: [usize; N_FINITE] = [0, 1, 3, 4];
+
+    /// The first of the lengths, and how they grow with those from the circle.
+    pub(super) fn place(&self) -> (usize, f64) {
+        match self.lengths {
+            CircleLengths::FromCircle => (0, 1.0),
+            CircleLengths::OfCircle(first) => (first, -1.0),
+        }
+    }
 
     /// The coordinates, in the order of their rows.
     pub fn coordinates(&self) -> [(BodyId, usize); N_FINITE] {
@@ -215,6 +236,18 @@ impl Circle {
     pub fn across(&self, at: FiniteCoordinates, force: [f64; 2]) -> f64 {
         let [along, ..] = Crossing::new(self, self.local(at)).rows();
         along[0] * force[0] + along[1] * force[1]
+    }
+
+    /// Growth of both with the azimuth of the link, m/rad, while what carries the circle stays.
+    pub fn along(&self, at: FiniteCoordinates) -> [f64; 2] {
+        let [cos, sin] = self.azimuth;
+        let (c, s) = (ALONG.cos(), ALONG.sin());
+        let turned = |s: f64| Circle {
+            azimuth: [cos * c - sin * s, sin * c + cos * s],
+            ..*self
+        };
+        let (before, after) = (turned(-s).lengths(at), turned(s).lengths(at));
+        [0, 1].map(|i| (after[i] - before[i]) / (2.0 * s))
     }
 
     /// Mean growth between two instants, with which rows times changes are the change of the lengths.

@@ -56,6 +56,23 @@ impl Link {
     }
 }
 
+impl CarriedCircle {
+    /// What lengths [radial, axial] from the circle put into the lengths of the link.
+    pub fn in_link(&self, [radial, axial]: [f64; 2]) -> LinkRows {
+        let (first, sign) = self.place();
+        let mut rows = LinkRows::default();
+        rows[first] = sign * radial;
+        rows[first + 1] = sign * axial;
+        rows
+    }
+
+    /// Forces on the lengths from the circle, of those of the link.
+    pub fn of_link(&self, forces: &[f64]) -> [f64; 2] {
+        let (first, sign) = self.place();
+        [sign * forces[first], sign * forces[first + 1]]
+    }
+}
+
 /// Lengths of all links of a family, one after the other.
 #[derive(Clone, Copy, Debug)]
 pub struct Lengths<'l> {

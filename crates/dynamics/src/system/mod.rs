@@ -33,7 +33,8 @@ mod tests;
 pub use assembly::{Evaluated, System};
 pub use elastic::{ElasticPorts, Follow};
 pub use finite::{
-    CarriedCircle, Circle, Curvature, FiniteCoordinates, FiniteMotion, FiniteRows, N_FINITE, angle_functions,
+    CarriedCircle, Circle, CircleLengths, Curvature, FiniteCoordinates, FiniteMotion, FiniteRows, N_FINITE,
+    angle_functions,
 };
 pub use interaction::{Character, Interaction, Lengths, Link, LinkForces, LinkRows, LinkTerm, MOST_ROWS};
 pub use lumped::{BodyId, Interval, Lumped};

@@ -106,12 +106,7 @@ impl RawContact {
         (balls, tilts_are_locked): (BallMotion, bool),
         problems: &mut Problems,
     ) -> Contact {
-        if balls == BallMotion::Free && self.ball == Some(BallElasticity::Sphere) {
-            problems.add(
-                "contact.ball is \"sphere\", but free balls yield as half-spaces: remove it, or use balls.motion = \
-                 \"kinematic\"",
-            );
-        }
+        self.check_free(balls, problems);
         let patch_elements = self.patch_elements.unwrap_or(DEFAULT_PATCH_ELEMENTS);
         problems.require(
             (0.5..=20.0).contains(&patch_elements),
@@ -154,6 +149,25 @@ impl RawContact {
             outer_stiffness: self.outer_stiffness.as_ref().map(Quantity::si),
             patch_elements,
             patch_length,
+        }
+    }
+
+    /// Refuses what free balls in motion do not know.
+    fn check_free(&self, balls: BallMotion, problems: &mut Problems) {
+        if balls != BallMotion::Free {
+            return;
+        }
+        if self.ball == Some(BallElasticity::Sphere) {
+            problems.add(
+                "contact.ball is \"sphere\", but free balls yield as half-spaces: remove it, or use balls.motion = \
+                 \"kinematic\"",
+            );
+        }
+        if self.groove_circle == Some(SeenGroove::Projected) {
+            problems.add(
+                "contact.groove_circle is \"projected\", but free balls in motion see a torus: remove it, or use \
+                 balls.motion = \"kinematic\"",
+            );
         }
     }
 

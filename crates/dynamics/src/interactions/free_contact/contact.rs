@@ -92,9 +92,9 @@ impl FoundContact {
 
 impl ContactStep {
     /// The contact at lengths at start and end.
-    pub fn evaluate(&self, [_, end]: [[f64; N_LENGTHS]; 2]) -> FoundContact {
+    pub fn evaluate(&self, [from, end]: [[f64; N_LENGTHS]; 2]) -> FoundContact {
         let x: [Jet; N_LENGTHS] = std::array::from_fn(|i| Jet::length(i, end[i]));
-        let [start, last] = [self.start(), self.standing_at_end(&x)];
+        let [start, last] = [self.start(&from), self.standing_at_end(&x)];
         let mid = self.middle(&start, &last, &x);
         let over = self.over_surface((&start, &last), (&mid, &x));
         let normal = match &over {
@@ -152,12 +152,9 @@ impl ContactStep {
         (place * self.law.evaluate(length - self.touching).tangent).max(self.law.evaluate(place).force)
     }
 
-    fn start(&self) -> Standing {
+    fn start(&self, from: &[f64; N_LENGTHS]) -> Standing {
         let carrier = self.ring.carrier[0].map(Jet::constant);
-        let motion = self
-            .ring
-            .elastic
-            .map_or([0.0; 2], |at| [at.start[0], at.start[1]]);
+        let motion = self.ring.elastic.map_or([0.0; 2], |_| [from[6], from[7]]);
         standing(
             &self.groove,
             fixed(self.ball[0]),
@@ -381,9 +378,9 @@ impl ContactStep {
     }
 
     /// Directions t, q, n of the middle of the step, in space.
-    pub fn directions(&self, [_, end]: [[f64; N_LENGTHS]; 2]) -> [[f64; 3]; 3] {
+    pub fn directions(&self, [from, end]: [[f64; N_LENGTHS]; 2]) -> [[f64; 3]; 3] {
         let x: [Jet; N_LENGTHS] = std::array::from_fn(|i| Jet::constant(end[i]));
-        let [start, last] = [self.start(), self.standing_at_end(&x)];
+        let [start, last] = [self.start(&from), self.standing_at_end(&x)];
         self.middle(&start, &last, &x).frame.directions()
     }
 }

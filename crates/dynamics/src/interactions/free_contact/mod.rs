@@ -33,7 +33,8 @@
 //! Newton's tangent is exact.
 //!
 //! Lengths of a link: displacement and rotation vector of the ball since the start (3 + 3), then either displacement of
-//! what carries the ring (5) or motion of an elastic ring at the ball (groove r, z; patch t, q).
+//! what carries the ring (5) or motion of an elastic ring at the ball (groove r, z; patch t, q). That of the groove has
+//! the finite motion of the shaft in it, as of balls in the cage's kinematics ([`crate::system::Circle`]).
 
 pub mod contact;
 pub mod jet;
@@ -48,10 +49,12 @@ use timer::SharedLaps;
 pub use contact::{ContactStep, FoundContact, SlipAt};
 use jet::Jet;
 pub use jet::N_LENGTHS;
-pub use ring_step::{ElasticPlace, FREE_FEET, FREE_PORTS, RingStep, SlopeForce};
+pub use ring_step::{ElasticPlace, FREE_FEET, FREE_PORTS, GROOVE_LENGTH, RingStep, SlopeForce};
 pub use surface_force::SurfaceForce;
 
-use crate::system::{BodyId, Character, Interaction, Lengths, Link, LinkForces, LinkRows, LinkTerm};
+use crate::system::{
+    BodyId, CarriedCircle, Character, Interaction, Lengths, Link, LinkForces, LinkRows, LinkTerm,
+};
 
 /// What moves a ring's side of the contacts.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -81,8 +84,14 @@ impl FreeContacts {
         }
     }
 
-    /// Connects balls, which are lumped bodies from `first_ball` on, and rings, inner first.
-    pub fn connect(&mut self, first_ball: usize, rings: [Carrier; 2]) {
+    /// Connects balls, which are lumped bodies from `first_ball` on, and rings, inner first. `finite` is what the
+    /// elastic ring of a contact moves by beyond the motion of its ports, which is linear in its tilts.
+    pub fn connect(
+        &mut self,
+        first_ball: usize,
+        rings: [Carrier; 2],
+        finite: impl Fn(usize) -> Option<CarriedCircle>,
+    ) {
         let link = |(index, _): (usize, &ContactStep)| {
             let (ball, side) = (index / 2, index % 2);
             let mut terms: Vec<LinkTerm> = (0..6)
@@ -96,7 +105,10 @@ impl FreeContacts {
                 }
                 Carrier::AtRest => {}
             }
-            Link::linear(LinkRows::default(), terms)
+            Link {
+                finite: finite(index),
+                ..Link::linear(LinkRows::default(), terms)
+            }
         };
         self.links = self.contacts.iter().enumerate().map(link).collect();
     }

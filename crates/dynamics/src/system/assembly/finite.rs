@@ -20,10 +20,11 @@ impl System<'_> {
         for (family, found) in self.interactions.iter().zip(links) {
             let forces = found.forces.chunks_exact(family.n_rows());
             for (link, force) in family.links().iter().zip(forces) {
-                let Some(finite) = link.finite.filter(|_| force[..2] != [0.0; 2]) else {
+                let Some(finite) = link.finite else { continue };
+                let force = finite.of_link(force).map(|force| share * force);
+                if force == [0.0; 2] {
                     continue;
-                };
-                let force = [share * force[0], share * force[1]];
+                }
                 let curvature = finite
                     .circle
                     .curvature(self.finite_coordinates(&finite, &end), force);

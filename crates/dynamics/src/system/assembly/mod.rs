@@ -209,7 +209,7 @@ impl<'a> System<'a> {
             let rows = self.mean_rows(&finite, &end);
             for ((of, coordinate), row) in finite.coordinates().into_iter().zip(rows) {
                 if of == BodyId::Lumped(body) {
-                    sum[coordinate] += product(&row, force);
+                    sum[coordinate] += product(&finite.in_link(row), force);
                 }
             }
         }
@@ -320,7 +320,7 @@ impl<'a> System<'a> {
             }
             if let Some(finite) = &link.finite {
                 let at = self.finite_coordinates(finite, coordinates);
-                let more = finite.circle.lengths(at);
+                let more = finite.in_link(finite.circle.lengths(at));
                 lengths.iter_mut().zip(more).for_each(|(l, more)| *l += more);
             }
         }
@@ -369,6 +369,7 @@ impl<'a> System<'a> {
         }
         let Some((finite, rows)) = finite else { return };
         for ((body, k), row) in finite.coordinates().into_iter().zip(rows) {
+            let row = finite.in_link(row);
             for (unknown, slope) in moves.of(self.coordinate(body, k)) {
                 let sum = match moved.iter().position(|(of, _)| of == unknown) {
                     Some(place) => &mut moved[place].1,

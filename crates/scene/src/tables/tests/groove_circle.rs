@@ -38,6 +38,13 @@ fn grooves_are_projected_where_tilts_are_locked() {
 #[test]
 fn balls_that_move_freely_see_a_torus() {
     assert_eq!(circle(&free(COULOMB, "")), SeenGroove::Exact);
+    let projected =
+        free(COULOMB, "").replacen("[contact]\n", "[contact]\ngroove_circle = \"projected\"\n", 1);
+    let message = message_of(&projected, &[]);
+    assert!(
+        message.contains("contact.groove_circle is \"projected\", but free balls in motion see a torus"),
+        "{message}"
+    );
 }
 
 /// Wrong: a list whose shaft cannot tilt would have other answers than each of its bearings alone.
