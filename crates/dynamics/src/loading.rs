@@ -15,7 +15,7 @@ use timer::SharedLaps;
 use crate::bearing::{BearingParts, ContactList, SeatStep};
 use crate::bodies::{FlatBody, Inertia, Name};
 use crate::displacements::Displacements;
-use crate::effects::steady_balls::SteadyBalls;
+use crate::effects::steady_balls::{SteadyBalls, drag};
 use crate::effects::{AtEquilibrium, Loads, Now, resultant, static_inertia, sum_of};
 use crate::equilibrium::SearchScales;
 use crate::error::DynamicsError;
@@ -27,6 +27,10 @@ use crate::relaxation::{Relaxation, following};
 use crate::surface_equilibrium::settle_on_surfaces;
 use crate::surfaces::{Strips, SurfacePlace};
 use crate::system::Interval;
+
+/// First step of a drag that grows, as a share of it, and the least.
+const FIRST_SHARE: f64 = 0.25;
+const LEAST_SHARE: f64 = 1e-3;
 
 /// Bodies and contacts of a model at an instant, with their loads.
 pub struct LoadCase<'a> {
@@ -42,6 +46,8 @@ pub struct LoadCase<'a> {
     pub scales: SearchScales,
     /// Newton iterations so far.
     pub newton_iterations: usize,
+    /// Share of the drag on free balls that acts.
+    drag_share: f64,
 }
 
 impl<'a> LoadCase<'a> {
@@ -62,6 +68,7 @@ impl<'a> LoadCase<'a> {
             loads: Loads::none(model.geometry.n_balls),
             scales: SearchScales::new(&model.geometry, stiffness),
             newton_iterations: 0,
+            drag_share: 1.0,
         };
         case.loads = case.loads_at(costs, u)?;
         case.parts.set_loads(&case.loads);
@@ -97,6 +104,7 @@ impl<'a> LoadCase<'a> {
                 approaches: &approaches,
                 strips: &strips,
                 balls: &u.balls,
+                drag_share: self.drag_share,
             }),
             ..self.pose.now
         };
@@ -117,7 +125,47 @@ impl<'a> LoadCase<'a> {
         costs: &SharedLaps,
         start: Displacements,
     ) -> Result<Displacements, DynamicsError> {
-        let mut u = self.minimise(&start)?;
+        match self.settle_from(costs, &start) {
+            Err(DynamicsError::NotSettled { .. }) if drag(self.model) > 0.0 => {
+                self.settle_by_drag(costs, start)
+            }
+            settled => settled,
+        }
+    }
+
+    /// The same along equilibria under a drag that grows: one that nearly stops a ball may have others beside it, or
+    /// none near the start.
+    fn settle_by_drag(
+        &mut self,
+        costs: &SharedLaps,
+        start: Displacements,
+    ) -> Result<Displacements, DynamicsError> {
+        self.drag_share = 0.0;
+        self.loads = self.loads_at(costs, &start)?;
+        self.parts.set_loads(&self.loads);
+        let (mut share, mut step, mut u) = (0.0, FIRST_SHARE, self.settle_from(costs, &start)?);
+        while share < 1.0 {
+            let loads = self.loads.clone();
+            self.drag_share = (share + step).min(1.0);
+            match self.settle_from(costs, &u) {
+                Ok(found) => (u, share, step) = (found, self.drag_share, 2.0 * step),
+                Err(DynamicsError::NotSettled { .. }) if step > LEAST_SHARE => {
+                    (self.loads, step) = (loads, 0.25 * step);
+                    self.parts.set_loads(&self.loads);
+                }
+                Err(error) => return Err(error),
+            }
+        }
+        Ok(u)
+    }
+
+    /// The same from one start.
+    fn settle_from(
+        &mut self,
+        costs: &SharedLaps,
+        start: &Displacements,
+    ) -> Result<Displacements, DynamicsError> {
+        let mut u = self.minimise(start)?;
         if !self.loads.follows_angles {
             return Ok(u);
         }

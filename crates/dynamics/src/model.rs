@@ -93,7 +93,7 @@ pub struct ContactSettings {
     /// How small a patch may be.
     pub least_patch: LeastSize,
     /// Whether a ball sees the point of the inner groove's circle at its azimuth, projected onto its meridian plane, as
-    /// in the methods of Jones and Harris, and not where the moved circle meets that plane.
+    /// in the methods of Jones and Harris, and not where the moved circle crosses that plane.
     pub projects_grooves: bool,
 }
 

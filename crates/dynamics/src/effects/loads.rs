@@ -181,6 +181,8 @@ pub struct AtEquilibrium<'a> {
     pub strips: &'a [Option<&'a Strips>],
     /// Displacements of the balls, m.
     pub balls: &'a [Meridian],
+    /// Share of the drag on balls that acts: 1, but on the way to an equilibrium.
+    pub drag_share: f64,
 }
 
 impl Now<'_> {

@@ -42,7 +42,7 @@ impl SteadyBalls {
         };
         let kinematic_orbit = Kinematics::new(&model.geometry, [0.0; 2]).cage_speed(speeds, now.time);
         let speeds = Side::BOTH.map(|side| speeds.of(side).at(now.time));
-        let drag = model.effects.iter().map(|effect| effect.drag(model)).sum();
+        let drag = seen.drag_share * drag(model);
         let balls: Vec<SteadyBall<'_>> = (0..model.geometry.n_balls)
             .map(|ball| SteadyBall {
                 out: model.geometry.ball_centre().radial + seen.balls[ball].radial,
@@ -169,6 +169,11 @@ impl SteadyBalls {
             kinematic_cage_speed_rad_per_s: self.kinematic_orbit,
         }
     }
+}
+
+/// Drag of a ball over the square of its speed, N s^2/m^2.
+pub fn drag(model: &Model) -> f64 {
+    model.effects.iter().map(|effect| effect.drag(model)).sum()
 }
 
 /// Speed with which a cage goes round, rad/s: that of the balls which roll, by the forces with which the inner ring

@@ -301,3 +301,44 @@ fn a_film_that_shears_rolls_the_same_in_equilibrium_and_in_motion() {
     let ratio = thin(0.08) / thin(0.04);
     assert!((ratio / 2f64.powf(0.33) - 1.0).abs() < 0.01, "{ratio}");
 }
+
+/// Wrong: where drag nearly stops a ball, loads would go to and fro about an equilibrium that a little less drag has,
+/// and none be found. The shaft is in balance, and the tractions of every ball that both rings press and no cage pushes
+/// carry its drag.
+#[test]
+fn equilibria_that_drag_has_moved_are_found() {
+    for (axial, across, direction) in [(100.0, 400.0, 0.12), (100.0, 400.0, 0.24), (400.0, 1600.0, 0.174)] {
+        let mut model = freed(thrust(axial), coulomb(0.07, Creep::Elastic), &speeds(6000.0));
+        model.effects.push(Box::new(RadialForce {
+            value: across,
+            direction,
+            schedule: Schedule::Constant,
+        }));
+        let drag = BallDrag { pressure: 5.0 };
+        let coefficient = drag.coefficient(&model);
+        model.effects.push(Box::new(drag));
+        model.shaft[3..].fill(ShaftDof::Prescribed(0.0));
+        let solution = equilibrium(&model);
+        let residual = solution.shaft_residual.iter().fold(0.0f64, |m, r| m.max(r.abs()));
+        assert!(residual < 1e-6 * across, "{residual}");
+        let steady = solution.steady.as_ref().unwrap();
+        let slowest = steady
+            .balls
+            .iter()
+            .fold(f64::INFINITY, |m, ball| m.min(ball.orbit));
+        let rolls = |(ball, free): &(&BallResult, &SteadyRolling)| {
+            ball.inner.force_n > 0.0 && free.orbit > slowest * (1.0 + 1e-9)
+        };
+        let mut rolling = 0;
+        for (_, ball) in solution.balls.iter().zip(&steady.balls).filter(rolls) {
+            let carried: f64 = ball.tractions.iter().map(|traction| traction.action[0]).sum();
+            let expected = coefficient * (ball.orbit * ball.out).powi(2);
+            assert!(
+                (carried - expected).abs() < 1e-6 * expected,
+                "{carried} {expected}"
+            );
+            rolling += 1;
+        }
+        assert!(rolling >= 8, "{rolling}");
+    }
+}

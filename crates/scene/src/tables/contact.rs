@@ -59,8 +59,7 @@ pub struct Contact {
     /// What balls yield. By default spheres, but half-spaces with rigid rings (the Jones-Harris limit), with facets
     /// (the paper's way), where a stiffness is given and where balls are free.
     pub ball: BallElasticity,
-    /// What they see of the inner groove. Projected by default where both tilts of the shaft are locked, but of free
-    /// balls.
+    /// What they see of the inner groove: projected by default, but a torus of balls that move freely.
     pub groove_circle: SeenGroove,
     /// Whether grooves end at their shoulders.
     pub edges: bool,
@@ -98,12 +97,12 @@ pub fn unusual_stiffnesses(contact: &Contact, bearing: &Bearing, materials: &Mat
 
 impl RawContact {
     /// Checks the table; bearing and materials are there when they are sound, to judge the size of a
-    /// stiffness. How balls move and whether both tilts of the shaft are locked decide what is usual.
+    /// stiffness. How balls move decides what is usual.
     pub fn check(
         &self,
         bearing: Option<&Bearing>,
         materials: Option<&Materials>,
-        (balls, tilts_are_locked): (BallMotion, bool),
+        balls: BallMotion,
         problems: &mut Problems,
     ) -> Contact {
         self.check_free(balls, problems);
@@ -141,7 +140,7 @@ impl RawContact {
             _ => BallElasticity::HalfSpace,
         };
         Contact {
-            groove_circle: self.seen_groove(balls, tilts_are_locked),
+            groove_circle: self.seen_groove(balls),
             ball: self.ball.unwrap_or(usual),
             mode: self.mode,
             edges: self.edges.unwrap_or(false),
@@ -171,10 +170,10 @@ impl RawContact {
         }
     }
 
-    fn seen_groove(&self, balls: BallMotion, tilts_are_locked: bool) -> SeenGroove {
-        let usual = match tilts_are_locked && balls == BallMotion::Kinematic {
-            true => SeenGroove::Projected,
-            false => SeenGroove::Exact,
+    fn seen_groove(&self, balls: BallMotion) -> SeenGroove {
+        let usual = match balls {
+            BallMotion::Kinematic => SeenGroove::Projected,
+            BallMotion::Free => SeenGroove::Exact,
         };
         self.groove_circle.unwrap_or(usual)
     }

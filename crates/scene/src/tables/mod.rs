@@ -401,12 +401,9 @@ impl TextSource<'_> {
         (bearing, materials): (Option<&Bearing>, Option<&Materials>),
         problems: &mut Problems,
     ) -> (Contact, SurfaceProfiles) {
-        let mut contact = raw.contact.check(
-            bearing,
-            materials,
-            (raw.moving_balls(), raw.shaft.tilts_are_locked()),
-            problems,
-        );
+        let mut contact = raw
+            .contact
+            .check(bearing, materials, raw.moving_balls(), problems);
         let surfaces = raw.surfaces_context(bearing, self.path, self.mesh_files);
         let diameters = raw.bearing.ball_diameters.as_ref();
         let profiles = raw.profiles.check(diameters, surfaces, &mut contact, problems);

@@ -116,13 +116,6 @@ const MAX_MASS: f64 = 1e6;
 const MAX_INERTIA: f64 = 1e6;
 
 impl RawShaft {
-    /// Whether the scene locks both tilts.
-    pub fn tilts_are_locked(&self) -> bool {
-        [&self.tilt_x, &self.tilt_y]
-            .iter()
-            .all(|tilt| tilt.motion() == ShaftMotion::Locked)
-    }
-
     /// Checks prescribed values, against the size of the bearing when that is sound.
     pub fn check(&self, bearing: Option<&Bearing>, clock: Clock, problems: &mut Problems) -> Shaft {
         let schedules = [

@@ -193,7 +193,15 @@ impl Composer<'_> {
                     &format!("\"{force:?} N\""),
                 );
             }
-            hold_shaft(list, document);
+            for (key, unit) in [
+                ("x", "m"),
+                ("y", "m"),
+                ("z", "m"),
+                ("tilt_x", "rad"),
+                ("tilt_y", "rad"),
+            ] {
+                set(document, &format!("shaft.{key}"), &format!("\"0 {unit}\""));
+            }
             set(document, "shaft.load_point", "\"0 m\"");
             for name in OVER_TIME {
                 if let Some(analysis) = list.get(name) {
@@ -287,23 +295,6 @@ fn note_shared_bodies(bearings: &mut [BearingOnShaft]) {
     {
         body.is_shared = names.iter().filter(|name| **name == body.name).count() > 1;
     }
-}
-
-/// Holds the shaft of a bearing's scene at a place, which the list moves; tilts that the list locks stay locked.
-fn hold_shaft(list: &DocumentMut, document: &mut DocumentMut) {
-    let shaft = list.get("shaft").and_then(Item::as_table_like);
-    let tilts = ["tilt_x", "tilt_y"];
-    let is_locked = |key: &str| shaft.and_then(|shaft| shaft.get(key)?.as_str()) == Some("locked");
-    let tilt = match tilts.iter().all(|key| is_locked(key)) {
-        true => "\"locked\"",
-        false => "\"0 rad\"",
-    };
-    tilts
-        .iter()
-        .for_each(|key| set(document, &format!("shaft.{key}"), tilt));
-    ["x", "y", "z"]
-        .iter()
-        .for_each(|key| set(document, &format!("shaft.{key}"), "\"0 m\""));
 }
 
 /// A body that carries several inner rings is the shaft between them, so nothing else may be.
