@@ -1,8 +1,10 @@
 //! Equilibria in which every ball rolls steadily under friction.
 
 use contact::film::Lubricant;
+use dynamics::balls::BallResult;
 use dynamics::effects::RadialForce;
 use dynamics::effects::ball_drag::BallDrag;
+use dynamics::interactions::steady_rolling::SteadyRolling;
 use dynamics::interactions::traction::{Creep, LimitingShear, Traction, TractionLaw};
 use dynamics::kinematics::{RingSpeeds, Speed};
 use dynamics::motion::Motion;
