@@ -37,9 +37,10 @@ fn resultant(balls: &Table, side: &str, at: [f64; 4]) -> ([f64; 3], [f64; 2]) {
     let force = balls.column(&format!("{side}_force_n"));
     let angle = balls.column(&format!("{side}_contact_angle_rad"));
     let azimuth = balls.column("azimuth_rad");
-    let across = match side == "inner" && balls.has("inner_across_n") {
-        true => balls.column("inner_across_n"),
-        false => vec![0.0; force.len()],
+    // Without the column balls see the point of the circle at their own azimuth.
+    let (across, at) = match side == "inner" && balls.has("inner_across_n") {
+        true => (balls.column("inner_across_n"), at),
+        false => (vec![0.0; force.len()], [0.0, 0.0, at[2], at[3]]),
     };
     let (mut sum, mut moment) = ([0.0; 3], [0.0; 2]);
     for i in 0..force.len() {
