@@ -109,7 +109,6 @@ struct Disc {
 
 /// The balls across the axis.
 fn balls(grid: &Grid, record: &StepRecord) -> Vec<Disc> {
-    let cells = (0..grid.types.len()).filter(|&i| grid.body[i] == raceways::BALLS);
     let ball = |i: usize| {
         let [_, [x, y]] = places(grid, record, grid.cell(i).next()?);
         Some(Disc {
@@ -118,7 +117,7 @@ fn balls(grid: &Grid, record: &StepRecord) -> Vec<Disc> {
             radius: grid.radius[i],
         })
     };
-    cells.filter_map(ball).collect()
+    raceways::ball_cells(grid).filter_map(ball).collect()
 }
 
 #[cfg(test)]

@@ -14,7 +14,12 @@ use scene::{MeshFiles, Scene, geometry};
 use super::quantity::DEGREE;
 
 /// Value of the cell array `body` on the balls.
-pub const BALLS: u8 = 2;
+const BALLS: u8 = 2;
+
+/// Cells of the balls.
+pub fn ball_cells(grid: &Grid) -> impl Iterator<Item = usize> {
+    (0..grid.body.len()).filter(|&cell| grid.body[cell] == BALLS)
+}
 
 /// How far a node may lie off the torus, in groove radii: meshes are exact to rounding in their files.
 const ON_TORUS: f64 = 1e-4;
@@ -169,8 +174,9 @@ pub fn most_loaded(
 fn most_loaded_point(grid: &Grid, record: &StepRecord, side: Side) -> Option<(usize, f64)> {
     let points = &record.points;
     let forces = side.choose(&points.force_inner, &points.force_outer).as_ref()?;
-    let cells = (0..grid.body.len()).filter(|&cell| grid.body[cell] == BALLS);
-    let balls: Vec<usize> = cells.filter_map(|cell| grid.cell(cell).next()).collect();
+    let balls: Vec<usize> = ball_cells(grid)
+        .filter_map(|cell| grid.cell(cell).next())
+        .collect();
     let force = |&point: &usize| forces[point].iter().map(|f| f * f).sum::<f64>().sqrt();
     let largest = balls.iter().map(force).fold(0.0, f64::max);
     let ball = balls

@@ -169,6 +169,7 @@ fn sine_over_angle(square: f64) -> [f64; 3] {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use contact::cross;
     use ring::{Integrator, StepScheme};
 
     const ROTOR: RigidInertia = RigidInertia {
@@ -205,14 +206,6 @@ mod tests {
     fn axis_at(t: f64) -> [f64; 3] {
         let [x, ..] = motion(t);
         axis([x[3], x[4]])
-    }
-
-    fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-        [
-            a[1] * b[2] - a[2] * b[1],
-            a[2] * b[0] - a[0] * b[2],
-            a[0] * b[1] - a[1] * b[0],
-        ]
     }
 
     fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {

@@ -90,27 +90,13 @@ impl TiltedLoads {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::system::rotated;
     use ring::{Integrator, StepScheme};
 
     const LOADS: TiltedLoads = TiltedLoads {
         lever: [30.0, -12.0, 50.0],
         moment: [0.0; 2],
     };
-
-    /// R v by Rodrigues' formula.
-    fn rotated(tilt: [f64; 2], v: [f64; 3]) -> [f64; 3] {
-        let angle = tilt[0].hypot(tilt[1]);
-        let k = [tilt[0] / angle, tilt[1] / angle, 0.0];
-        let cross = |a: [f64; 3], b: [f64; 3]| {
-            [
-                a[1] * b[2] - a[2] * b[1],
-                a[2] * b[0] - a[0] * b[2],
-                a[0] * b[1] - a[1] * b[0],
-            ]
-        };
-        let (once, twice) = (cross(k, v), cross(k, cross(k, v)));
-        [0, 1, 2].map(|i| v[i] + angle.sin() * once[i] + (1.0 - angle.cos()) * twice[i])
-    }
 
     fn potential(tilt: [f64; 2]) -> f64 {
         let axis = rotated(tilt, [0.0, 0.0, 1.0]);

@@ -52,7 +52,6 @@ fn circle(azimuth: f64, radius: f64, is_projected: bool) -> Circle {
 /// plane, on a shaft at these displacements, m and rad; None where grooves are projected.
 pub fn across_on_ball(model: &Model, azimuth: f64, shaft: &[f64; 5], on_ring: Meridian) -> Option<f64> {
     let radius = model.geometry.centre_radius(Side::Inner);
-    let at = CarriedCircle::COORDINATES.map(|k| shaft[k]);
-    let across = || circle(azimuth, radius, false).across(at, on_ring.to_array());
+    let across = || circle(azimuth, radius, false).across(CarriedCircle::of(shaft), on_ring.to_array());
     (!model.contact.projects_grooves).then(across)
 }

@@ -143,10 +143,7 @@ impl Site {
         if self.side == Side::Outer {
             return l;
         }
-        let more = Meridian::from(
-            self.circle()
-                .lengths(CarriedCircle::COORDINATES.map(|k| shaft[k])),
-        );
+        let more = Meridian::from(self.circle().lengths(CarriedCircle::of(&shaft)));
         let by_dof = self.carrier_rows().into_iter().zip(shaft);
         let of_shaft = by_dof.map(|(row, q)| row.map(|r| r * q)).reduce(|a, b| a + b);
         l + (more - of_shaft.unwrap_or_default())

@@ -16,7 +16,7 @@ use super::span::PartSpan;
 use super::state::MotionState;
 use crate::bearing::{BearingParts, FreeParts};
 use crate::bodies::FreeBall;
-use crate::effects::steady_balls::SteadyBalls;
+use crate::effects::steady_balls::{SteadyBalls, drag};
 use crate::error::DynamicsError;
 use crate::interactions::free_contact::orientation::turned;
 use crate::interactions::free_contact::place::GrooveCircle;
@@ -178,12 +178,7 @@ impl Motion<'_> {
             turning: free.turnings[ball],
             trend: [0, 1].map(|k| std::array::from_fn(|i| free.trends[ball][3 * k + i])),
             load: fall.map(|a| inertia.mass * a),
-            drag: self
-                .model
-                .effects
-                .iter()
-                .map(|effect| effect.drag(self.model))
-                .sum(),
+            drag: drag(self.model),
             dt: span.dt,
         }
     }

@@ -36,8 +36,6 @@ pub type Curvature = [[f64; N_FINITE]; N_FINITE];
 const GAUSS: [f64; 2] = [0.211_324_865_405_187_1, 0.788_675_134_594_812_9];
 /// Step of a difference quotient of slopes, rad, and of a displacement over the radius.
 const DIFFERENCE: f64 = 1e-6;
-/// Half of the azimuth over which lengths are compared, rad: right to its square, 1e-6 of what they add to a slope.
-const ALONG: f64 = 1e-3;
 /// t^2 below which the functions of the angle are taken by their series.
 const SMALL: f64 = 0.25;
 /// Displacement over the radius beyond which a circle goes on straight; far beyond that of any bearing.
@@ -105,6 +103,11 @@ impl CarriedCircle {
             CircleLengths::FromCircle => (0, 1.0),
             CircleLengths::OfCircle(first) => (first, -1.0),
         }
+    }
+
+    /// The coordinates of a body, of whose five these are four.
+    pub fn of(body: &[f64; 5]) -> FiniteCoordinates {
+        CarriedCircle::COORDINATES.map(|k| body[k])
     }
 
     /// The coordinates, in the order of their rows.
@@ -220,15 +223,9 @@ impl Circle {
 
     /// Growth of both with the coordinates.
     pub fn rows(&self, at: FiniteCoordinates) -> FiniteRows {
-        let [along, p, q] = Crossing::new(self, self.local(at)).rows();
-        let [cos, sin] = self.azimuth;
-        let both = |a: f64, b: f64| [0, 1].map(|i| a * p[i] + b * q[i]);
-        [
-            along.map(|growth| -sin * growth),
-            along.map(|growth| cos * growth),
-            both(cos, -sin),
-            both(sin, cos),
-        ]
+        let local = Crossing::new(self, self.local(at)).rows();
+        self.directions()
+            .map(|motions| [0, 1].map(|i| motions.iter().map(|(of, share)| share * local[*of][i]).sum()))
     }
 
     /// Force that keeps the link in its half-plane, along e_psi, N, when `force` acts on the lengths: what the circle
@@ -240,14 +237,12 @@ impl Circle {
 
     /// Growth of both with the azimuth of the link, m/rad, while what carries the circle stays.
     pub fn along(&self, at: FiniteCoordinates) -> [f64; 2] {
-        let [cos, sin] = self.azimuth;
-        let (c, s) = (ALONG.cos(), ALONG.sin());
-        let turned = |s: f64| Circle {
-            azimuth: [cos * c - sin * s, sin * c + cos * s],
-            ..*self
-        };
-        let (before, after) = (turned(-s).lengths(at), turned(s).lengths(at));
-        [0, 1].map(|i| (after[i] - before[i]) / (2.0 * s))
+        let ([cos, sin], [x, y, ..]) = (self.azimuth, at);
+        let local = self.local(at);
+        let [_, p, q] = local;
+        let turned = [-(x * cos + y * sin), q, -p];
+        let rows = Crossing::new(self, local).rows();
+        [0, 1].map(|i| rows.iter().zip(turned).map(|(row, moved)| row[i] * moved).sum())
     }
 
     /// Mean growth between two instants, with which rows times changes are the change of the lengths.
@@ -340,4 +335,4 @@ fn series(n: u32, square: f64) -> f64 {
 }
 
 #[cfg(test)]
-mod tests;
+pub(super) mod tests;

@@ -32,6 +32,8 @@ mod tests;
 
 pub use assembly::{Evaluated, System};
 pub use elastic::{ElasticPorts, Follow};
+#[cfg(test)]
+pub(crate) use finite::tests::rotated;
 pub use finite::{
     CarriedCircle, Circle, CircleLengths, Curvature, FiniteCoordinates, FiniteMotion, FiniteRows, N_FINITE,
     angle_functions,

@@ -6,6 +6,8 @@
 //!
 //! The frame of a ball is (u, -e_psi, a) at the start ([`contact::surface::ball`]).
 
+use contact::cross;
+
 /// A rotation: w, x, y, z.
 pub type Quaternion = [f64; 4];
 
@@ -50,14 +52,6 @@ fn product([a, b, c, d]: Quaternion, [e, f, g, h]: Quaternion) -> Quaternion {
         a * f + b * e + c * h - d * g,
         a * g - b * h + c * e + d * f,
         a * h + b * g - c * f + d * e,
-    ]
-}
-
-fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [
-        a[1] * b[2] - a[2] * b[1],
-        a[2] * b[0] - a[0] * b[2],
-        a[0] * b[1] - a[1] * b[0],
     ]
 }
 

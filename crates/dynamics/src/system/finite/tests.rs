@@ -1,6 +1,7 @@
 //! Tests of moved circles.
 
 use super::*;
+use contact::cross;
 
 const CIRCLE: Circle = Circle {
     azimuth: [0.8, 0.6],
@@ -24,18 +25,23 @@ fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
 }
 
 /// R v by Rodrigues' formula.
-fn rotated([x, y]: [f64; 2], v: [f64; 3]) -> [f64; 3] {
+pub fn rotated([x, y]: [f64; 2], v: [f64; 3]) -> [f64; 3] {
     let angle = x.hypot(y).max(f64::MIN_POSITIVE);
     let k = [x / angle, y / angle, 0.0];
-    let cross = |a: [f64; 3], b: [f64; 3]| {
-        [
-            a[1] * b[2] - a[2] * b[1],
-            a[2] * b[0] - a[0] * b[2],
-            a[0] * b[1] - a[1] * b[0],
-        ]
-    };
     let (once, twice) = (cross(k, v), cross(k, cross(k, v)));
     [0, 1, 2].map(|i| v[i] + angle.sin() * once[i] + (1.0 - angle.cos()) * twice[i])
+}
+
+/// Where a growing function vanishes between two places, by bisection.
+fn zero_between(mut low: f64, mut high: f64, growing: impl Fn(f64) -> f64) -> f64 {
+    for _ in 0..200 {
+        let middle = 0.5 * (low + high);
+        match growing(middle) > 0.0 {
+            true => high = middle,
+            false => low = middle,
+        }
+    }
+    low
 }
 
 /// Place of the point of the moved circle at the azimuth psi + delta of the body.
@@ -50,18 +56,16 @@ fn place(circle: &Circle, [x, y, tilt_x, tilt_y]: FiniteCoordinates, delta: f64)
     [x + turned[0], y + turned[1], turned[2]]
 }
 
-/// Where the moved circle meets the half-plane, along e_r and z, by bisection.
+/// Where round the body the moved circle meets the half-plane.
+fn crossing(circle: &Circle, at: FiniteCoordinates) -> f64 {
+    let [cos, sin] = circle.azimuth;
+    zero_between(-0.6, 0.6, |delta| dot(place(circle, at, delta), [-sin, cos, 0.0]))
+}
+
+/// The place there, along e_r and z.
 fn met(circle: &Circle, at: FiniteCoordinates) -> [f64; 2] {
     let [cos, sin] = circle.azimuth;
-    let (mut low, mut high) = (-0.6, 0.6);
-    for _ in 0..200 {
-        let middle = 0.5 * (low + high);
-        match dot(place(circle, at, middle), [-sin, cos, 0.0]) > 0.0 {
-            true => high = middle,
-            false => low = middle,
-        }
-    }
-    let found = place(circle, at, low);
+    let found = place(circle, at, crossing(circle, at));
     [dot(found, [cos, sin, 0.0]) - circle.radius, found[2]]
 }
 
@@ -100,16 +104,11 @@ fn distances_are_those_from_a_torus() {
         let found = place(&CIRCLE, at, delta);
         [0, 1, 2].map(|i| ball[i] - found[i])
     };
-    let (mut low, mut high) = (-0.1, 0.1);
-    for _ in 0..100 {
-        let (middle, h) = (0.5 * (low + high), 1e-4);
-        let growth = [0, 1, 2].map(|i| between(middle + h)[i] - between(middle - h)[i]);
-        match dot(between(middle), growth) > 0.0 {
-            true => high = middle,
-            false => low = middle,
-        }
-    }
-    let (least, seen) = (dot(between(low), between(low)).sqrt(), l[0].hypot(l[1]));
+    let nearest = zero_between(-0.1, 0.1, |delta| {
+        let [before, after] = [delta - 1e-4, delta + 1e-4].map(between);
+        dot(between(delta), [0, 1, 2].map(|i| after[i] - before[i]))
+    });
+    let (least, seen) = (dot(between(nearest), between(nearest)).sqrt(), l[0].hypot(l[1]));
     assert!((least / seen - 1.0).abs() < 1e-6, "{least} {seen}");
 }
 
@@ -162,15 +161,8 @@ fn a_force_has_no_part_along_the_circle() {
     for at in MOTIONS {
         let [cos, sin] = CIRCLE.azimuth;
         let beside = [-sin, cos, 0.0];
-        let (mut low, mut high) = (-0.6, 0.6);
-        for _ in 0..100 {
-            let middle = 0.5 * (low + high);
-            match dot(place(&CIRCLE, at, middle), beside) > 0.0 {
-                true => high = middle,
-                false => low = middle,
-            }
-        }
-        let [before, after] = [low - 1e-5, low + 1e-5].map(|delta| place(&CIRCLE, at, delta));
+        let met = crossing(&CIRCLE, at);
+        let [before, after] = [met - 1e-5, met + 1e-5].map(|delta| place(&CIRCLE, at, delta));
         let along = [0, 1, 2].map(|i| after[i] - before[i]);
         let force = [-300.0, 90.0];
         let across = CIRCLE.across(at, force);
@@ -180,6 +172,23 @@ fn a_force_has_no_part_along_the_circle() {
         assert!(part.abs() < 1e-6, "{at:?}: {part}");
     }
     assert_eq!(PROJECTED.across(MOTIONS[1], [-300.0, 90.0]), 0.0);
+}
+
+/// Wrong: a ball that goes round would meet another slope of the groove than the circle has. Difference quotients.
+#[test]
+fn lengths_grow_along_the_circle() {
+    for at in MOTIONS {
+        let (h, along) = (1e-5, CIRCLE.along(at));
+        let [before, after] = [-h, h].map(|turn: f64| {
+            let ([cos, sin], (s, c)) = (CIRCLE.azimuth, turn.sin_cos());
+            let azimuth = [cos * c - sin * s, sin * c + cos * s];
+            Circle { azimuth, ..CIRCLE }.lengths(at)
+        });
+        for i in 0..2 {
+            let growth = (after[i] - before[i]) / (2.0 * h);
+            assert!((growth - along[i]).abs() < 1e-11, "{at:?} {growth} {along:?}");
+        }
+    }
 }
 
 /// Wrong: contacts would make or lose energy over a step, because forces act through other slopes than lengths
