@@ -6,26 +6,22 @@ use contact::Side;
 use dynamics::displacements::Displacements;
 use dynamics::equilibrium::SearchScales;
 use dynamics::statics::ContactColumns;
+use dynamics::stiffness::{N_SHAFT, ShaftMatrix};
 use dynamics::{Model, Pose, StaticSolution, StaticSolver};
 use timer::Laps;
 
+use crate::body_rounds::{LOOSEST, change, has_stalled, largest, tolerance_after};
 use crate::error::AssemblyError;
 use crate::housing::{HousedTogether, SharedBody, housed_together, shared_bodies};
-use crate::mixing::{Mixing, dot};
+use crate::loads::{ShaftLoads, first_dofs, lever_stiffness};
+use crate::mixing::Mixing;
 use crate::newton::{Mount, Problem, Scales, SettledShaft, settle};
 use crate::place::{MountedBearing, Orientation};
-use crate::shaft::ShaftBody;
+use crate::shaft::{ShaftBody, Station};
 use crate::support::{BearingSupport, BearingSupports};
 
 /// Change of the forces on a body over their size at which its bearings no longer feel each other's.
 const BODY_TOLERANCE: f64 = 1e-9;
-/// The same that may be left where rounds no longer get on, and after how many of them.
-const BODY_FLOOR: f64 = 1e-7;
-const BODY_PATIENCE: usize = 3;
-/// Tolerance of the forces in a round over the change of the forces on the bodies in the one before, and the most. The
-/// last round has the tolerance of the scene.
-const SHARE_OF_CHANGE: f64 = 1e-2;
-const LOOSEST: f64 = 1e-4;
 /// Rounds of these before giving up.
 const MOST_BODY_ROUNDS: usize = 100;
 
@@ -35,8 +31,8 @@ pub struct Assembly {
     pub bearings: Vec<MountedBearing>,
     /// The shaft without what bearings carry.
     pub shaft: ShaftBody,
-    /// Loads on the shaft's dofs, N and N m.
-    pub load: Vec<f64>,
+    /// Loads on the shaft.
+    pub load: ShaftLoads,
 }
 
 /// Rings factored, once those of a type, and what each bearing has found of them.
@@ -80,6 +76,18 @@ impl Assembly {
         housed_together(&self.bearings)
     }
 
+    /// Takes the tilts of a rigid shaft for small where a body that it carries does, which carries several bearings.
+    pub fn be_linear_in_bodies(&mut self) {
+        let is_carried = |body: &HousedTogether| {
+            let model = &self.bearings[body.bearings[0]].model;
+            let tie = model.tied(body.side).and_then(|ring| ring.tie.as_ref());
+            tie.is_some_and(|tie| tie.carried().is_some())
+        };
+        if self.housed_together().iter().any(is_carried) {
+            self.shaft.be_linear();
+        }
+    }
+
     /// The places of the bearings on the shaft.
     pub fn mounts(&self) -> Vec<Mount> {
         let mount = |bearing: &MountedBearing| Mount {
@@ -88,6 +96,32 @@ impl Assembly {
             station: self.shaft.station(bearing.place.position),
         };
         self.bearings.iter().map(mount).collect()
+    }
+
+    /// The places of the bearings, with their motions about an equilibrium.
+    pub fn stations_at(&self, solution: &AssemblySolution) -> Vec<Station> {
+        let at = |bearing: &MountedBearing| {
+            let station = self.shaft.station(bearing.place.position);
+            station.at(&solution.shaft.displacements)
+        };
+        self.bearings.iter().map(at).collect()
+    }
+
+    /// Loads of the shaft on the bearings in an equilibrium, in its frame, N and N m.
+    pub fn loads_on_bearings(&self, solution: &AssemblySolution) -> Vec<[f64; N_SHAFT]> {
+        let on = |i: usize| self.force_on_shaft(i, solution).map(|force| -force);
+        (0..self.bearings.len()).map(on).collect()
+    }
+
+    /// What the levers of all forces on a rigid shaft add to its stiffness about its origin, in an equilibrium; nothing
+    /// of a linear shaft.
+    pub fn of_levers(&self, solution: &AssemblySolution) -> ShaftMatrix {
+        let places = self.mounts().into_iter().map(|mount| mount.station);
+        let on_bearings = places.zip(self.loads_on_bearings(solution));
+        let levers = self.load.beyond_straight(&self.shaft, on_bearings);
+        levers.map_or([[0.0; N_SHAFT]; N_SHAFT], |levers| {
+            lever_stiffness(&levers, first_dofs(&solution.shaft.displacements))
+        })
     }
 
     /// Sizes of the search: those of the largest bearing.
@@ -433,38 +467,6 @@ impl AskedTolerances {
             bearing.model.tolerances.force = force.max(loose);
         }
     }
-}
-
-/// Tolerance of the forces in the round after one that changed the forces on the bodies by this share: where that might
-/// have been the last, it is that of the scene.
-fn tolerance_after(change: f64, is_last: bool) -> f64 {
-    match is_last {
-        true => 0.0,
-        false => LOOSEST.min(SHARE_OF_CHANGE * change),
-    }
-}
-
-/// Not `f64::max`: what is no number is no small change.
-fn largest(changes: &[f64]) -> f64 {
-    changes
-        .iter()
-        .fold(0.0, |most, c| if *c <= most { most } else { *c })
-}
-
-/// Change of forces over their size.
-fn change(x: &[f64], found: &[f64]) -> f64 {
-    let difference: Vec<f64> = found.iter().zip(x).map(|(g, x)| g - x).collect();
-    let size = dot(found, found).max(dot(x, x)).sqrt();
-    match size == 0.0 {
-        true => 0.0,
-        false => dot(&difference, &difference).sqrt() / size,
-    }
-}
-
-/// Whether what is left is what the balance of shaft and rings leaves: it has not halved for some rounds.
-fn has_stalled(history: &[f64], change: f64) -> bool {
-    let before = history.len().checked_sub(BODY_PATIENCE).map(|i| history[i]);
-    change <= BODY_FLOOR && before.is_some_and(|before| change > 0.5 * before)
 }
 
 /// With which rings.

@@ -15,9 +15,11 @@
 
 pub mod assembly;
 pub mod beam;
+mod body_rounds;
 mod error;
 mod housing;
 mod housing_damping;
+pub mod loads;
 mod mixing;
 pub mod modes;
 pub mod motion;
@@ -38,6 +40,7 @@ pub use assembly::{Assembly, AssemblySolution, AssemblySolver, AssemblyStart};
 pub use beam::{BeamSection, BeamShaft, PointMass};
 pub use error::AssemblyError;
 pub use housing::HousedTogether;
+pub use loads::ShaftLoads;
 pub use motion::{AssemblyMotion, AssemblyState};
 pub use place::{MountedBearing, Orientation, Seating};
 pub use ring::rigid::RigidInertia;

@@ -12,7 +12,8 @@ use dynamics::whirl::shaft_inertia;
 
 use crate::assembly::{Assembly, AssemblySolution};
 use crate::error::AssemblyError;
-use crate::newton::Mount;
+use crate::place::MountedBearing;
+use crate::shaft::Station;
 
 /// The modes about an equilibrium of the assembly.
 pub fn modes(
@@ -22,16 +23,21 @@ pub fn modes(
     progress: &mut dyn FnMut(Searched),
 ) -> Result<ModesOfSeveral, AssemblyError> {
     let free = free_dofs(assembly);
-    let mounts = assembly.mounts();
-    let pairs = assembly.bearings.iter().zip(&solution.bearings).zip(&mounts);
+    let stations = assembly.stations_at(solution);
+    let pairs = assembly.bearings.iter().zip(&solution.bearings).zip(&stations);
     let bearings: Vec<BearingOnFreeShaft<'_>> = pairs
-        .map(|((bearing, equilibrium), mount)| BearingOnFreeShaft {
+        .map(|((bearing, equilibrium), station)| BearingOnFreeShaft {
             model: &bearing.model,
             equilibrium,
-            place: motion_of(mount, &free),
+            place: motion_of(bearing, station, &free),
         })
         .collect();
-    let found = modes_of_several(&bearings, &free_shaft(assembly, &free), settings, progress);
+    let found = modes_of_several(
+        &bearings,
+        &free_shaft((assembly, solution), &free),
+        settings,
+        progress,
+    );
     found.map_err(|source| AssemblyError::Modes { source })
 }
 
@@ -42,14 +48,14 @@ pub fn free_dofs(assembly: &Assembly) -> Vec<usize> {
 }
 
 /// Motion of the shaft at a bearing, in its frame, by free dofs.
-fn motion_of(mount: &Mount, free: &[usize]) -> [Vec<(usize, f64)>; N_SHAFT] {
+fn motion_of(bearing: &MountedBearing, station: &Station, free: &[usize]) -> [Vec<(usize, f64)>; N_SHAFT] {
     let mut motion = [const { Vec::new() }; N_SHAFT];
     for (number, dof) in free.iter().enumerate() {
-        let Some(j) = dof.checked_sub(mount.station.first).filter(|j| *j < N_SHAFT) else {
+        let Some(j) = dof.checked_sub(station.first).filter(|j| *j < N_SHAFT) else {
             continue;
         };
-        let column = mount.station.motion.map(|row| row[j]);
-        for (row, value) in motion.iter_mut().zip(mount.place.orientation.turned(column)) {
+        let column = station.motion.map(|row| row[j]);
+        for (row, value) in motion.iter_mut().zip(bearing.place.orientation.turned(column)) {
             if value != 0.0 {
                 row.push((number, value));
             }
@@ -59,12 +65,16 @@ fn motion_of(mount: &Mount, free: &[usize]) -> [Vec<(usize, f64)>; N_SHAFT] {
 }
 
 /// The shaft by its free dofs, with the rigid rings on it.
-fn free_shaft(assembly: &Assembly, free: &[usize]) -> FreeShaft {
+fn free_shaft((assembly, solution): (&Assembly, &AssemblySolution), free: &[usize]) -> FreeShaft {
     let mut shaft = assembly.shaft.clone();
     for (bearing, mount) in assembly.bearings.iter().zip(assembly.mounts()) {
         shaft.add_inertia(&mount.station, &shaft_inertia(&bearing.model));
     }
     let (n, arm) = (shaft.n(), assembly.scales().tilt_arm);
+    let of_levers = assembly.of_levers(solution);
+    for (row, more) in shaft.stiffness.chunks_exact_mut(n).zip(&of_levers) {
+        row.iter_mut().zip(more).for_each(|(sum, more)| *sum += more);
+    }
     let pick = |matrix: &[f64]| -> Vec<f64> {
         let row = |i: &usize| free.iter().map(|k| matrix[n * i + k]).collect::<Vec<f64>>();
         free.iter().flat_map(row).collect()

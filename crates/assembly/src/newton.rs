@@ -10,11 +10,13 @@
 
 use comm::Communicator;
 use dense::DenseLu;
-use dynamics::bodies::AXES;
+use dynamics::bodies::{AXES, TiltedLoads};
 use dynamics::model::MAX_TILT;
 use dynamics::stiffness::N_SHAFT;
+use dynamics::system::Interval;
 
 use crate::error::AssemblyError;
+use crate::loads::{ShaftLoads, first_dofs, lever_stiffness};
 use crate::place::Seating;
 use crate::shaft::{ShaftBody, Station, times};
 use crate::support::{SupportAnswer, Supports};
@@ -62,8 +64,8 @@ pub struct Scales {
 pub struct Problem<'a> {
     /// The shaft.
     pub shaft: &'a ShaftBody,
-    /// Loads on its dofs, N and N m.
-    pub load: &'a [f64],
+    /// Loads on it.
+    pub load: &'a ShaftLoads,
     /// Where it is held.
     pub mounts: &'a [Mount],
     /// Sizes.
@@ -90,6 +92,8 @@ struct Iterate {
     q: Vec<f64>,
     answers: Vec<SupportAnswer>,
     residual: Vec<f64>,
+    /// Levers of all forces on a rigid shaft.
+    levers: Option<TiltedLoads>,
     error: f64,
     limit: f64,
 }
@@ -157,10 +161,9 @@ impl Problem<'_> {
     fn evaluate(&self, supports: &mut dyn Supports, q: Vec<f64>) -> Result<Iterate, AssemblyError> {
         let n = self.shaft.n();
         let elastic = times(n, &self.shaft.stiffness, &q);
-        let mut residual: Vec<f64> = self.load.iter().zip(&elastic).map(|(f, k)| f - k).collect();
-        let mut largest = (0..n).fold(f64::MIN_POSITIVE, |m, i| {
-            m.max(self.load[i].abs() * self.length(i))
-        });
+        let load = &self.load.on_dofs;
+        let mut residual: Vec<f64> = load.iter().zip(&elastic).map(|(f, k)| f - k).collect();
+        let mut largest = (0..n).fold(f64::MIN_POSITIVE, |m, i| m.max(load[i].abs() * self.length(i)));
         let mut asked = Vec::with_capacity(self.mounts.len());
         for (number, mount) in self.mounts.iter().enumerate() {
             let own = mount.place.into_bearing(mount.station.displacement(&q));
@@ -176,6 +179,11 @@ impl Problem<'_> {
                 largest = largest.max(f.abs() * self.length(i));
             }
         }
+        let levers = self.levers(&answers);
+        if let Some(levers) = &levers {
+            let more = levers.over(Interval::Rest, [first_dofs(&q); 2]);
+            residual.iter_mut().zip(more).for_each(|(sum, more)| *sum += more);
+        }
         let free = (0..n).filter(|&i| self.shaft.held[i].is_none());
         let error = free.fold(0.0f64, |m, i| m.max(residual[i].abs() * self.length(i))) / largest;
         let round_off = 16.0 * f64::EPSILON * self.cancelled(&q) / largest;
@@ -183,9 +191,20 @@ impl Problem<'_> {
             q,
             answers,
             residual,
+            levers,
             error,
             limit: self.scales.tolerance.max(round_off),
         })
+    }
+
+    /// Levers of all forces on a rigid shaft.
+    fn levers(&self, answers: &[SupportAnswer]) -> Option<TiltedLoads> {
+        let on_bearing = |(mount, answer): (&'_ Mount, &SupportAnswer)| {
+            let load = mount.place.orientation.turned(answer.load);
+            (mount.station, load)
+        };
+        let on_bearings = self.mounts.iter().zip(answers).map(on_bearing);
+        self.load.beyond_straight(self.shaft, on_bearings)
     }
 
     /// Forces of which the elastic forces of the shaft are the small sum, N.
@@ -204,7 +223,12 @@ impl Problem<'_> {
         let mut tangent = self.shaft.stiffness.clone();
         for (mount, answer) in self.mounts.iter().zip(&at.answers) {
             let turned = mount.place.orientation.turned_matrix(&answer.stiffness);
-            mount.station.add_matrix(&turned, n, &mut tangent);
+            mount.station.at(&at.q).add_matrix(&turned, n, &mut tangent);
+        }
+        if let Some(levers) = &at.levers {
+            let matrix = lever_stiffness(levers, first_dofs(&at.q));
+            let sums = tangent.iter_mut().zip(matrix.as_flattened());
+            sums.for_each(|(sum, more)| *sum += more);
         }
         tangent
     }

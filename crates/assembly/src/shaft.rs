@@ -1,23 +1,32 @@
 //! The shaft as a linear structure: stiffness, mass, gyroscopic matrix, loads and where its dofs are held.
 //!
-//! A rigid shaft has five dofs: x, y, z and the tilts of the axis point at position 0. A point of the axis at position
-//! s moves by the linear motion x + s tilt_y, y - s tilt_x. A beam has five dofs at every node.
+//! A rigid shaft has five dofs: x, y, z of the axis point at position 0, and the rotation vector phi of its finite
+//! rotation R, which has no component along z. A point of the axis at position s moves by
+//!
+//! ```text
+//! x + s (R - 1) e_z,   R e_z = (phi_y sin(t)/t, -phi_x sin(t)/t, cos t),   t = |phi|
+//! ```
+//!
+//! A beam has five dofs at every node, and is linear.
 
 use dynamics::stiffness::{N_SHAFT, ShaftMatrix};
+use dynamics::system::angle_functions;
 use ring::rigid::RigidInertia;
 
 use crate::beam::{BeamShaft, PointMass};
 use crate::error::AssemblyError;
 
-/// A place on the shaft: its displacement is `motion` times the five dofs from `first` on.
+/// A place on the shaft: to first order its displacement is `motion` times the five dofs from `first` on.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Station {
     /// Position along the shaft, m.
     pub position: f64,
     /// First of five dofs.
     pub first: usize,
-    /// Motion of the place for those dofs.
+    /// Motion of the place for those dofs: of a straight shaft, unless it was asked for at a displacement.
     pub motion: ShaftMatrix,
+    /// Distance from the origin of a rigid shaft that tilts by finite rotations, m; else 0.
+    pub lever: f64,
 }
 
 impl Station {
@@ -27,12 +36,46 @@ impl Station {
             position,
             first: 0,
             motion: lever(position),
+            lever: position,
         }
     }
 
-    /// Displacement of the place.
+    /// Displacement of a place that was asked for of a straight shaft.
     pub fn displacement(&self, q: &[f64]) -> [f64; N_SHAFT] {
-        applied(&self.motion, &q[self.first..self.first + N_SHAFT])
+        let mut place = self.moved(q);
+        let [tilt_x, tilt_y] = [q[self.first + 3], q[self.first + 4]];
+        let square = tilt_x * tilt_x + tilt_y * tilt_y;
+        let [c, e] = angle_functions(square);
+        // (R - 1) e_z less its first order.
+        place[0] -= self.lever * square * e * tilt_y;
+        place[1] += self.lever * square * e * tilt_x;
+        place[2] -= self.lever * square * c;
+        place
+    }
+
+    /// The same place with its motion about a displacement of the shaft.
+    pub fn at(&self, q: &[f64]) -> Station {
+        if self.lever == 0.0 {
+            return *self;
+        }
+        let [tilt_x, tilt_y] = [q[self.first + 3], q[self.first + 4]];
+        let square = tilt_x * tilt_x + tilt_y * tilt_y;
+        let [c, e] = angle_functions(square);
+        let s = 1.0 - square * e;
+        let mut motion = identity();
+        // d(sin(t)/t)/d phi = (e - c) phi.
+        motion[0][3] = self.lever * (e - c) * tilt_x * tilt_y;
+        motion[0][4] = self.lever * (s + (e - c) * tilt_y * tilt_y);
+        motion[1][3] = -self.lever * (s + (e - c) * tilt_x * tilt_x);
+        motion[1][4] = -self.lever * (e - c) * tilt_x * tilt_y;
+        motion[2][3] = -self.lever * s * tilt_x;
+        motion[2][4] = -self.lever * s * tilt_y;
+        Station { motion, ..*self }
+    }
+
+    /// Motion of the place for one of the dofs, by [`motion`](Station::motion).
+    pub fn moved(&self, by: &[f64]) -> [f64; N_SHAFT] {
+        applied(&self.motion, &by[self.first..self.first + N_SHAFT])
     }
 
     /// Adds the share of the dofs in a load at the place.
@@ -93,6 +136,8 @@ pub struct ShaftBody {
     /// Gyroscopic matrix of 1 rad/s, row-major.
     pub gyroscopic: Vec<f64>,
     is_beam: bool,
+    /// Whether places have no levers: of a beam, and under a body that is linear.
+    is_linear: bool,
 }
 
 impl ShaftBody {
@@ -133,7 +178,18 @@ impl ShaftBody {
             mass: vec![0.0; n * n],
             gyroscopic: vec![0.0; n * n],
             is_beam,
+            is_linear: is_beam,
         }
+    }
+
+    /// Takes the tilts of a rigid shaft for small, as an elastic body does that it carries with several bearings.
+    pub fn be_linear(&mut self) {
+        self.is_linear = true;
+    }
+
+    /// Whether its places move by its dofs to first order alone.
+    pub fn is_linear(&self) -> bool {
+        self.is_linear
     }
 
     /// Number of dofs.
@@ -149,7 +205,7 @@ impl ShaftBody {
     /// The place at a position, m: any of a rigid shaft, the nearest node of a beam.
     pub fn station(&self, position: f64) -> Station {
         if !self.is_beam {
-            return Station::on_rigid_shaft(position);
+            return self.at_distance(position);
         }
         let distance = |k: &usize| (self.nodes[*k] - position).abs();
         let node = (0..self.nodes.len()).min_by(|a, b| distance(a).total_cmp(&distance(b)));
@@ -157,6 +213,19 @@ impl ShaftBody {
             position,
             first: N_SHAFT * node.unwrap_or(0),
             motion: identity(),
+            lever: 0.0,
+        }
+    }
+
+    /// The place of a rigid shaft at a distance, m, from the point whose dofs are those of the shaft.
+    pub fn at_distance(&self, distance: f64) -> Station {
+        let station = Station::on_rigid_shaft(distance);
+        match self.is_linear {
+            true => Station {
+                lever: 0.0,
+                ..station
+            },
+            false => station,
         }
     }
 
@@ -188,11 +257,6 @@ impl ShaftBody {
         self.add_inertia(&station, &inertia);
     }
 
-    /// Adds a load at a position, force x, y, z, N, and moment about x and y, N m.
-    pub fn add_load(&self, position: f64, load: [f64; N_SHAFT], to: &mut [f64]) {
-        self.station(position).add_load(load, to);
-    }
-
     /// Load of a uniform acceleration, m/s^2, on all its mass: what does the same work. Masses whose centre is off
     /// their node are in the mass matrix with their first moments.
     pub fn weight(&self, acceleration: [f64; 3]) -> Vec<f64> {
@@ -206,8 +270,16 @@ impl ShaftBody {
 
     /// Displacement at a position that may lie between nodes: linear between those of a beam.
     pub fn displacement_at(&self, position: f64, q: &[f64]) -> [f64; N_SHAFT] {
+        match self.is_beam {
+            true => self.moved_at(position, q),
+            false => self.station(position).displacement(q),
+        }
+    }
+
+    /// The same to first order about a straight shaft: for modes.
+    pub fn moved_at(&self, position: f64, q: &[f64]) -> [f64; N_SHAFT] {
         if !self.is_beam {
-            return self.station(position).displacement(q);
+            return self.station(position).moved(q);
         }
         let last = self.nodes.len() - 1;
         let after = self.nodes.partition_point(|z| *z < position).clamp(1, last);
@@ -225,4 +297,37 @@ pub fn times(n: usize, matrix: &[f64], x: &[f64]) -> Vec<f64> {
         row[near.clone()].iter().zip(&x[near]).map(|(a, x)| a * x).sum()
     };
     matrix.chunks_exact(n).enumerate().map(row).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Wrong: a place would be pushed another way than it moves: motions are the slopes of displacements, and places
+    /// keep their distance from the origin.
+    #[test]
+    fn places_move_by_the_slopes_of_their_displacement() {
+        let shaft = ShaftBody::rigid(RigidInertia::default(), [None; N_SHAFT]);
+        let station = shaft.station(0.3);
+        for q in [
+            [0.0; 5],
+            [1e-3, 2e-3, -1e-3, 0.02, -0.05],
+            [0.0, 0.0, 0.0, 0.4, 0.6],
+        ] {
+            let motion = station.at(&q).motion;
+            for k in 0..N_SHAFT {
+                let (h, mut low, mut high) = (1e-5, q, q);
+                (low[k], high[k]) = (low[k] - h, high[k] + h);
+                let [low, high] = [low, high].map(|q| station.displacement(&q));
+                for i in 0..N_SHAFT {
+                    let slope = (high[i] - low[i]) / (2.0 * h);
+                    assert!((slope - motion[i][k]).abs() < 1e-10, "{i} {k}");
+                }
+            }
+            let moved = station.displacement(&q);
+            let apart = [0, 1, 2].map(|i| moved[i] - q[i] + if i == 2 { 0.3 } else { 0.0 });
+            let distance = apart.iter().map(|x| x * x).sum::<f64>().sqrt();
+            assert!((distance - 0.3).abs() < 1e-15, "{distance}");
+        }
+    }
 }

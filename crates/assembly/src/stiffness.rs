@@ -20,9 +20,11 @@ use crate::assembly::{Assembly, AssemblySolution, AssemblySolver};
 use crate::error::AssemblyError;
 use crate::housing::{SharedBody, coupled};
 use crate::housing_damping::damping_in_bodies;
+use crate::loads::{first_dofs, lever_stiffness, levers};
 use crate::shaft::{Station, applied};
 
 /// Bearings of an assembly to first order.
+#[derive(Default)]
 pub struct LinearAssembly {
     /// Each alone, in its own frame.
     pub bearings: Vec<Linearisation>,
@@ -32,6 +34,14 @@ pub struct LinearAssembly {
     pub damping: Vec<Option<ShaftMatrix>>,
     /// What bearings do to each other through bodies that carry them.
     pub couplings: Vec<BodyCoupling>,
+    /// Their places on the shaft, with the motions of these about the equilibrium.
+    pub stations: Vec<Station>,
+    /// What the levers of all forces on a rigid shaft add to its stiffness about its origin: none of a beam.
+    pub of_levers: ShaftMatrix,
+    /// Displacement of the shaft's dofs, m and rad.
+    shaft: Vec<f64>,
+    /// Loads of the shaft on each, in the shaft's frame, N and N m.
+    on_bearings: Vec<[f64; N_SHAFT]>,
 }
 
 /// Bearings in bodies that carry several.
@@ -81,10 +91,11 @@ impl LinearAssembly {
         (laws, speeds): PassedDamping<'_>,
     ) -> Result<LinearAssembly, AssemblyError> {
         let mut linear = LinearAssembly {
-            bearings: Vec::new(),
-            stiffness: Vec::new(),
-            damping: Vec::new(),
-            couplings: Vec::new(),
+            stations: assembly.stations_at(solution),
+            of_levers: assembly.of_levers(solution),
+            shaft: solution.shaft.displacements.clone(),
+            on_bearings: assembly.loads_on_bearings(solution),
+            ..LinearAssembly::default()
         };
         for (i, bearing) in assembly.bearings.iter().enumerate() {
             let fail = AssemblyError::of_bearing(&bearing.name);
@@ -99,6 +110,14 @@ impl LinearAssembly {
         }
         linear.couple(assembly, solver, solution)?;
         Ok(linear)
+    }
+
+    /// Places of the bearings on a rigid shaft whose dofs are those of its point at a position, m, in the equilibrium.
+    fn stations_about(&self, assembly: &Assembly, position: f64) -> Vec<Station> {
+        let places = assembly.bearings.iter().map(|b| b.place.position - position);
+        places
+            .map(|place| assembly.shaft.at_distance(place).at(&self.shaft))
+            .collect()
     }
 
     /// The same with the inertia of balls that go round at these speeds, rad/s, each bearing's own: for modes. Matrices
@@ -203,7 +222,7 @@ impl LinearAssembly {
             for column in 0..n {
                 let (mut unit, mut load) = (vec![0.0; n], vec![0.0; n]);
                 unit[column] = 1.0;
-                let moved = stations[coupling.moved].displacement(&unit);
+                let moved = stations[coupling.moved].moved(&unit);
                 stations[coupling.loaded].add_load(applied(&between, &moved), &mut load);
                 let rows = matrix.iter_mut().skip(column).step_by(n);
                 rows.zip(load).for_each(|(sum, load)| *sum += load);
@@ -216,13 +235,15 @@ impl LinearAssembly {
         let shaft = &assembly.shaft;
         if !shaft.is_beam() {
             let mut sum = vec![0.0; N_SHAFT * N_SHAFT];
-            for (bearing, stiffness) in assembly.bearings.iter().zip(&self.stiffness) {
-                let station = Station::on_rigid_shaft(bearing.place.position - position);
+            let stations = self.stations_about(assembly, position);
+            for (station, stiffness) in stations.iter().zip(&self.stiffness) {
                 station.add_matrix(stiffness, N_SHAFT, &mut sum);
             }
-            let places = assembly.bearings.iter().map(|b| b.place.position - position);
-            let stations: Vec<Station> = places.map(Station::on_rigid_shaft).collect();
             self.add_couplings(&stations, N_SHAFT, &mut sum);
+            let pushed = stations.into_iter().zip(self.on_bearings.iter().copied());
+            let of_levers = lever_stiffness(&levers(pushed), first_dofs(&self.shaft));
+            let sums = sum.iter_mut().zip(of_levers.as_flattened());
+            sums.for_each(|(sum, more)| *sum += more);
             return Ok(square(&sum));
         }
         let n = shaft.n();
@@ -267,13 +288,10 @@ impl LinearAssembly {
             true => (shaft.n(), None),
             false => (N_SHAFT, Some(position)),
         };
-        let bearings = assembly.bearings.iter().zip(assembly.mounts());
-        let stations: Vec<Station> = bearings
-            .map(|(bearing, mount)| match origin {
-                Some(origin) => Station::on_rigid_shaft(bearing.place.position - origin),
-                None => mount.station,
-            })
-            .collect();
+        let stations = match origin {
+            Some(origin) => self.stations_about(assembly, origin),
+            None => self.stations.clone(),
+        };
         let mut damping = vec![0.0; n * n];
         for (station, own) in stations.iter().zip(&self.damping) {
             if let Some(own) = own {

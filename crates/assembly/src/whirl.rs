@@ -94,7 +94,6 @@ impl TurningAssembly {
         if self.bodies.is_empty() {
             return equations(assembly, &self.shaft, linear, speed);
         }
-        let mounts = assembly.mounts();
         let bearing = |b: usize| {
             let of: &MountedBearing = &assembly.bearings[b];
             WhirlBearing {
@@ -102,14 +101,15 @@ impl TurningAssembly {
                 solver: solver.of_bearing(b),
                 solution: &solution.bearings[b],
                 linear: &linear.bearings[b],
-                motion: own_motion(of, &mounts[b].station),
-                first: mounts[b].station.first,
+                motion: own_motion(of, &linear.stations[b]),
+                first: linear.stations[b].first,
                 way: of.place.orientation.turned_angle(1.0),
                 ring: self.rings[b],
             }
         };
         let bearings: Vec<_> = (0..assembly.bearings.len()).map(bearing).collect();
-        self.in_bodies(of_shaft(&self.shaft, self.shaft.n(), speed), &bearings, speed)
+        let shaft = of_shaft((&self.shaft, linear), self.shaft.n(), speed);
+        self.in_bodies(shaft, &bearings, speed)
     }
 
     /// The equations of one linearised bearing alone at a speed, rad/s.
@@ -120,7 +120,7 @@ impl TurningAssembly {
         linear: &Linearisation,
         speed: f64,
     ) -> Result<TurningShaft, AssemblyError> {
-        let mut shaft = of_shaft(&self.shaft, N_SHAFT, speed);
+        let mut shaft = of_shaft_alone(&self.shaft, N_SHAFT, speed);
         let loads = linear.load_stiffness.as_flattened();
         shaft
             .stiffness
@@ -212,17 +212,17 @@ pub fn equations(
     let n_shaft = shaft.n();
     let balls = |b: usize| 2 * assembly.bearings[b].model.geometry.n_balls;
     let n = n_shaft + (0..assembly.bearings.len()).map(balls).sum::<usize>();
-    let mut all = of_shaft(shaft, n, speed);
+    let mut all = of_shaft((shaft, linear), n, speed);
     let free: Vec<usize> = (0..n_shaft).filter(|&i| shaft.held[i].is_none()).collect();
     require_inertia(&all, &free)?;
     let mut rows = free.clone();
     let mut first = n_shaft;
-    for (b, (bearing, mount)) in assembly.bearings.iter().zip(assembly.mounts()).enumerate() {
+    for (b, (bearing, station)) in assembly.bearings.iter().zip(&linear.stations).enumerate() {
         let fail = AssemblyError::of_bearing(&bearing.name);
         let own = linear.bearings[b].of_shaft_and_balls().map_err(fail)?;
         let at = BearingRows {
-            motion: own_motion(bearing, &mount.station),
-            shaft: mount.station.first,
+            motion: own_motion(bearing, station),
+            shaft: station.first,
             balls: first,
         };
         at.add((own.n, &own.stiffness), n, &mut all.stiffness);
@@ -245,8 +245,17 @@ pub fn equations(
     Ok(TurningShaft::of_matrices(all.of_rows(&rows), shaft_rows, speed))
 }
 
+/// Matrices of the shaft at a speed with the levers of all forces, of `n` rows with room for what follows its dofs.
+fn of_shaft((shaft, linear): (&ShaftBody, &LinearAssembly), n: usize, speed: f64) -> WhirlMatrices {
+    let mut matrices = of_shaft_alone(shaft, n, speed);
+    for (row, more) in matrices.stiffness.chunks_exact_mut(n).zip(&linear.of_levers) {
+        row.iter_mut().zip(more).for_each(|(sum, more)| *sum += more);
+    }
+    matrices
+}
+
 /// Matrices of the shaft at a speed, of `n` rows with room for what follows its dofs.
-fn of_shaft(shaft: &ShaftBody, n: usize, speed: f64) -> WhirlMatrices {
+fn of_shaft_alone(shaft: &ShaftBody, n: usize, speed: f64) -> WhirlMatrices {
     let spread = |matrix: &[f64], factor: f64| {
         let mut whole = vec![0.0; n * n];
         for (row, own) in whole.chunks_exact_mut(n).zip(matrix.chunks_exact(shaft.n())) {

@@ -1,5 +1,6 @@
 //! The beam shaft against closed forms: statics, natural frequencies, gyroscopic moments.
 
+use assembly::ShaftLoads;
 use assembly::newton::{Mount, Problem, Scales, settle};
 use assembly::stiffness::LinearAssembly;
 use assembly::support::LinearSupport;
@@ -50,8 +51,8 @@ fn deflection(
 ) -> (ShaftBody, Vec<f64>) {
     let stations: Vec<f64> = supports.iter().map(|(z, _)| *z).chain([position]).collect();
     let shaft = ShaftBody::beam(beam, &stations).unwrap();
-    let mut loads = vec![0.0; shaft.n()];
-    shaft.add_load(position, load, &mut loads);
+    let mut loads = ShaftLoads::none(&shaft);
+    loads.add(&shaft.station(position), load);
     let mounts: Vec<Mount> = supports
         .iter()
         .map(|(z, _)| Mount {
@@ -151,19 +152,14 @@ fn the_weight_is_that_of_all_sections() {
 
 /// Modes without bearings at a speed, rad/s.
 fn modes(shaft: ShaftBody, speed: f64) -> Vec<WhirlMode> {
-    let load = vec![0.0; shaft.n()];
+    let load = ShaftLoads::none(&shaft);
     let turning = shaft.clone();
     let assembly = Assembly {
         bearings: Vec::new(),
         shaft,
         load,
     };
-    let linear = LinearAssembly {
-        bearings: Vec::new(),
-        stiffness: Vec::new(),
-        damping: Vec::new(),
-        couplings: Vec::new(),
-    };
+    let linear = LinearAssembly::default();
     equations(&assembly, &turning, &linear, speed)
         .unwrap()
         .modes()

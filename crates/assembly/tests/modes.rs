@@ -116,7 +116,7 @@ fn a_list_of_one_bearing_is_that_bearing() {
     let force = [900.0, -300.0, 1500.0];
     for make in [bare, flexible, mean_motion] {
         let mut list = on_shaft(ShaftBody::rigid(INERTIA, [None; 5]), &[(0.0, PlusZ, 0.0)], make);
-        list.load[..3].copy_from_slice(&force);
+        list.load.on_dofs[..3].copy_from_slice(&force);
         let found = of_list(&mut list, 16);
         let expected = alone(make, [ShaftDof::Free; 5], INERTIA.mass, force);
         compare(&frequencies(&found), &of_modes(&expected), 1e-7);
@@ -202,7 +202,9 @@ fn a_heavy_shaft_swings_on_the_stiffness_of_its_pair() {
     };
     for make in [bare, flexible] {
         let mut list = on_shaft(ShaftBody::rigid(heavy, [None; 5]), &PAIR, make);
-        list.load.copy_from_slice(&[200.0, -100.0, 100.0, 1.0, 2.0]);
+        list.load
+            .on_dofs
+            .copy_from_slice(&[200.0, -100.0, 100.0, 1.0, 2.0]);
         let (solver, solution) = solve(&mut list);
         let linear = LinearAssembly::new(&list, &solver, &solution, DampingLaws::default()).unwrap();
         let stiffness = linear.of_shaft(&list, 0.0).unwrap();
@@ -218,8 +220,8 @@ fn a_heavy_shaft_swings_on_the_stiffness_of_its_pair() {
 #[test]
 fn on_a_beam_the_modes_are_those_of_the_campbell_diagram_at_rest() {
     let mut list = on_shaft(beam(), &PAIR, bare);
-    list.shaft
-        .add_load(-0.1, [40.0, -20.0, 60.0, 0.0, 0.5], &mut list.load);
+    let station = list.shaft.station(-0.1);
+    list.load.add(&station, [40.0, -20.0, 60.0, 0.0, 0.5]);
     let (solver, solution) = solve(&mut list);
     let linear = LinearAssembly::new(&list, &solver, &solution, DampingLaws::default()).unwrap();
     let turning = turning_shaft(&list).unwrap();

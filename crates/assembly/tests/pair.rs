@@ -1,5 +1,6 @@
 //! Bearings on a shaft against closed forms of rigid rings, identities and differences.
 
+use assembly::ShaftLoads;
 use assembly::shaft::ShaftBody;
 use assembly::stiffness::LinearAssembly;
 use assembly::{
@@ -18,9 +19,8 @@ fn rigid(places: &[At]) -> Assembly {
 }
 
 fn load(assembly: &mut Assembly, position: f64, load: [f64; 5]) {
-    let mut sum = std::mem::take(&mut assembly.load);
-    assembly.shaft.add_load(position, load, &mut sum);
-    assembly.load = sum;
+    let station = assembly.shaft.station(position);
+    assembly.load.add(&station, load);
 }
 
 fn solve(assembly: &mut Assembly) -> (AssemblySolver, AssemblySolution) {
@@ -196,33 +196,80 @@ fn an_assembly_turned_about_x_gives_turned_answers() {
     }
 }
 
-/// Wrong: loads on the shaft and the forces of the bearings would not balance, wherever the loads act.
+/// Place of a point of the axis at distance `s` from the origin, by the rotation vector of the shaft.
+fn on_axis([a, b]: [f64; 2], s: f64) -> [f64; 3] {
+    let t = a.hypot(b);
+    let sinc = if t == 0.0 { 1.0 } else { t.sin() / t };
+    [s * b * sinc, -s * a * sinc, s * t.cos()]
+}
+
+/// Wrong: loads on the shaft and the forces of the bearings would not balance, wherever the loads act. All do no work
+/// on a small motion of the tilted shaft.
 #[test]
 fn bearings_carry_what_loads_along_the_shaft_ask_for() {
     let mut pair = rigid(&[(0.0, PlusZ, 10e-6), (0.05, MinusZ, 10e-6)]);
     load(&mut pair, -0.04, [500.0, 0.0, 0.0, 0.0, 0.0]);
     load(&mut pair, 0.11, [0.0, -350.0, 120.0, 1.0, 3.0]);
     let (_, solution) = solve(&mut pair);
-    let mut sum = [0.0; 5];
-    for (i, bearing) in pair.bearings.iter().enumerate() {
-        let force = pair.force_on_shaft(i, &solution);
-        let s = bearing.place.position;
-        let moved = [0, 1, 2, 3, 4].map(|k| match k {
-            3 => force[3] - s * force[1],
-            4 => force[4] + s * force[0],
-            _ => force[k],
-        });
-        (0..5).for_each(|k| sum[k] += moved[k]);
+    let q = &solution.shaft.displacements;
+    let forces: Vec<(f64, [f64; 5])> = (0..2)
+        .map(|i| (pair.bearings[i].place.position, pair.force_on_shaft(i, &solution)))
+        .chain([
+            (-0.04, [500.0, 0.0, 0.0, 0.0, 0.0]),
+            (0.11, [0.0, -350.0, 120.0, 1.0, 3.0]),
+        ])
+        .collect();
+    // Work of the forces where the tilts are by `h` larger and smaller; moments are small.
+    for k in 0..2 {
+        let h = 1e-4;
+        let work = |sign: f64| -> f64 {
+            let mut tilt = [q[3], q[4]];
+            tilt[k] += sign * h;
+            let of = |(s, f): &(f64, [f64; 5])| -> f64 {
+                let x = on_axis(tilt, *s);
+                (0..3).map(|i| f[i] * x[i]).sum::<f64>() + f[3] * tilt[0] + f[4] * tilt[1]
+            };
+            forces.iter().map(of).sum()
+        };
+        let left = (work(1.0) - work(-1.0)) / (2.0 * h);
+        assert!(left.abs() < 1e-9 * 500.0 * 0.05, "{k}: {left:e}");
     }
-    let loads = [500.0, -350.0, 120.0, 1.0 + 0.11 * 350.0, 3.0 - 0.04 * 500.0];
-    for k in 0..5 {
-        let scale = if k < 3 { 500.0 } else { 500.0 * 0.05 };
-        assert!(
-            (sum[k] + loads[k]).abs() < 1e-10 * scale,
-            "{k}: {:e} against {:e}",
-            sum[k],
-            loads[k]
-        );
+    for k in 0..3 {
+        let left: f64 = forces.iter().map(|(_, f)| f[k]).sum();
+        assert!(left.abs() < 1e-10 * 500.0, "{k}: {left:e}");
+    }
+}
+
+/// Wrong: forces on a tilted shaft would keep the arms of the straight one. A bearing that stands off the origin and is
+/// turned round by a list, under a force along the axis and one across at other places, against the bearing alone with
+/// the same forces about its own place: linear arms leave half a per cent of the tilt.
+#[test]
+fn a_bearing_off_the_origin_tilts_as_alone() {
+    const AT: f64 = 0.07;
+    for (radial, axial, place) in [(300.0, 3000.0, 0.03), (-80.0, 600.0, -0.02)] {
+        let case = Case {
+            radial,
+            free_tilt: true,
+            ..Case::axial(axial)
+        };
+        let mut alone = case.rigid();
+        alone.load_point = place - AT;
+        alone.contact.projects_grooves = true;
+        alone.shaft = [dynamics::ShaftDof::Free; 5];
+        let expected = equilibrium(&alone).displacements.shaft;
+        let mut one = rigid(&[(AT, PlusZ, 0.0)]);
+        load(&mut one, place, [radial, 0.0, axial, 0.0, 0.0]);
+        let (_, solution) = solve(&mut one);
+        let found = one.shaft.station(AT).displacement(&solution.shaft.displacements);
+        for k in 0..5 {
+            let size = if k < 3 { 1e-5 } else { 1e-3 };
+            assert!(
+                (found[k] - expected[k]).abs() < 1e-8 * size,
+                "{k}: {found:?} {expected:?}"
+            );
+        }
+        println!("{expected:?}");
+        assert!(expected[4].abs() > 1e-4, "{expected:?}");
     }
 }
 
@@ -336,12 +383,11 @@ fn a_beam_of_a_million_times_the_stiffness_is_a_rigid_shaft() {
 /// as the matrix says, to the square of the change.
 #[test]
 fn the_stiffness_of_the_shaft_is_that_of_differences() {
-    let places = [(0.0, PlusZ, 9e-6), (0.1, MinusZ, 9e-6)];
     for make in [
         || rigid(&[(0.0, PlusZ, 9e-6), (0.1, MinusZ, 9e-6)]),
+        || rigid(&[(-0.045, PlusZ, 0.0)]),
         || on_beam(1.0, &[(0.0, PlusZ, 9e-6), (0.1, MinusZ, 9e-6)], -0.05, bare),
     ] {
-        let _ = places;
         let mut assembly = make();
         load(&mut assembly, -0.05, COMBINED);
         let (solver, at) = solve(&mut assembly);
@@ -351,7 +397,7 @@ fn the_stiffness_of_the_shaft_is_that_of_differences() {
         let mut moved = |j: usize, sign: f64| {
             let mut change = COMBINED;
             change[j] += sign * if j < 3 { 0.02 } else { 0.0005 };
-            assembly.load.iter_mut().for_each(|f| *f = 0.0);
+            assembly.load = ShaftLoads::none(&assembly.shaft);
             load(&mut assembly, -0.05, change);
             let (_, solution) = solve(&mut assembly);
             place.displacement(&solution.shaft.displacements)

@@ -36,7 +36,7 @@ fn instants(
     load: [f64; 5],
     poses: impl Fn(f64, &Assembly) -> Vec<Pose>,
 ) -> Vec<AssemblySolution> {
-    list.shaft.add_load(0.0, load, &mut list.load);
+    list.load.add(&list.shaft.station(0.0), load);
     let mut solver = AssemblySolver::new(&list).unwrap();
     let mut all: Vec<AssemblySolution> = Vec::new();
     for n in 0..=N {
@@ -152,7 +152,7 @@ fn an_instant_is_the_equilibrium_of_balls_that_stand_so() {
     let found = instants(on_shaft(rigid([None; 5]), &places, bare), load, turning);
     for (n, found) in found.iter().enumerate() {
         let mut list = on_shaft(rigid([None; 5]), &places, bare);
-        list.shaft.add_load(0.0, load, &mut list.load);
+        list.load.add(&list.shaft.station(0.0), load);
         let poses = turning(n as f64 * DT, &list);
         for (bearing, pose) in list.bearings.iter_mut().zip(&poses) {
             bearing.model.geometry.first_ball_azimuth += pose.now.cage_angle;
@@ -206,7 +206,7 @@ fn an_equilibrium_follows_from_its_start_and_the_tangents() {
     let load = [900.0, 100.0, 200.0, 0.0, 2.0];
     let places: [At; 2] = [(0.0, PlusZ, 8e-6), (0.04, MinusZ, 8e-6)];
     let mut list = on_shaft(rigid([None; 5]), &places, flexible);
-    list.shaft.add_load(0.0, load, &mut list.load);
+    list.load.add(&list.shaft.station(0.0), load);
     let mut solver = AssemblySolver::new(&list).unwrap();
     let mut next = None;
     for n in 0..3 {

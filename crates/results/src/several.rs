@@ -182,7 +182,10 @@ fn in_one_turn(angle: f64) -> f64 {
 }
 
 /// Places of the shaft and their displacements: nodes of a beam; of a rigid shaft its bearings.
-pub(crate) fn line(assembly: &Assembly, displacements: &[f64]) -> Vec<(f64, [f64; N_SHAFT])> {
+pub(crate) fn line(
+    assembly: &Assembly,
+    displacement: impl Fn(f64) -> [f64; N_SHAFT],
+) -> Vec<(f64, [f64; N_SHAFT])> {
     let shaft = &assembly.shaft;
     let mut places = match shaft.is_beam() {
         true => shaft.nodes.clone(),
@@ -195,8 +198,7 @@ pub(crate) fn line(assembly: &Assembly, displacements: &[f64]) -> Vec<(f64, [f64
     };
     places.sort_by(f64::total_cmp);
     places.dedup();
-    let at = |z: f64| (z, shaft.displacement_at(z, displacements));
-    places.into_iter().map(at).collect()
+    places.into_iter().map(|z| (z, displacement(z))).collect()
 }
 
 /// Turns a motion out of the frame of a bearing into that of the shaft.
@@ -220,7 +222,7 @@ impl ListState {
     /// The line of the shaft: places and their displacements. On an elastic body these are the seats of its bearings.
     pub fn line(&self, assembly: &Assembly) -> Vec<(f64, [f64; N_SHAFT])> {
         if assembly.shaft.is_beam() || !self.bearings.iter().any(|bearing| bearing.is_on_body) {
-            return line(assembly, &self.shaft);
+            return line(assembly, |z| assembly.shaft.displacement_at(z, &self.shaft));
         }
         let places = assembly.bearings.iter().map(|bearing| bearing.place.position);
         let displacements = self.bearings.iter().map(|bearing| bearing.displacement);

@@ -80,7 +80,7 @@ fn line_of_mode(
     let mut q = vec![0.0; assembly.shaft.n()];
     free.iter().zip(&mode.shaft).for_each(|(&dof, x)| q[dof] = *x);
     if bodies.is_empty() {
-        return line(assembly, &q);
+        return line(assembly, |z| assembly.shaft.moved_at(z, &q));
     }
     let of_body = |body: &ShaftBodyLine| {
         let shape = mode.bearings[body.bearing].shape.bodies[ON_SHAFT.index()].as_ref();
@@ -90,7 +90,7 @@ fn line_of_mode(
     for bearing in &assembly.bearings {
         if bearing.model.tied(ON_SHAFT).is_none() {
             let z = bearing.place.position;
-            places.push((z, assembly.shaft.displacement_at(z, &q)));
+            places.push((z, assembly.shaft.moved_at(z, &q)));
         }
     }
     places.sort_by(|a, b| a.0.total_cmp(&b.0));

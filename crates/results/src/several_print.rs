@@ -51,7 +51,7 @@ pub fn print_solution(assembly: &Assembly, last: &ListState) {
 
 /// The ends of a beam.
 fn ends(assembly: &Assembly, displacements: &[f64]) -> Vec<(f64, [f64; N_SHAFT])> {
-    let line = line(assembly, displacements);
+    let line = line(assembly, |z| assembly.shaft.displacement_at(z, displacements));
     match assembly.shaft.is_beam() {
         true => vec![line[0], line[line.len() - 1]],
         false => Vec::new(),

@@ -1,6 +1,6 @@
 //! From a scene with a list of bearings to the bearings on their shaft.
 
-use assembly::{Assembly, AssemblyError, MountedBearing, Seating, ShaftBody};
+use assembly::{Assembly, AssemblyError, MountedBearing, Seating, ShaftBody, ShaftLoads};
 use contact::Side;
 use dynamics::Model;
 use dynamics::effects::{Loads, Now, Setting};
@@ -61,11 +61,13 @@ pub fn assembly_with_rings(scene: &SeveralScene, rings: Vec<Rings>) -> Result<As
     }
     let shaft = shaft(scene)?;
     let load = loads(scene, (&shaft, &bearings), &Now::default())?;
-    Ok(Assembly {
+    let mut assembly = Assembly {
         bearings,
         shaft,
         load,
-    })
+    };
+    assembly.be_linear_in_bodies();
+    Ok(assembly)
 }
 
 /// Whether two scenes have the same finite-element rings, so that one factorisation serves both.
@@ -126,19 +128,19 @@ fn rigid_shaft(rigid: &RigidShaft) -> ShaftBody {
     ShaftBody::rigid(inertia, held)
 }
 
-/// Loads on the shaft's dofs at an instant, or their means over an interval about it: those along the shaft, those of
+/// Loads on the shaft at an instant, or their means over an interval about it: those along the shaft, those of
 /// effects at the load point, the pull of an unbalance where it is, its weight, and that of bodies on it.
 pub fn loads(
     scene: &SeveralScene,
     (shaft, bearings): (&ShaftBody, &[MountedBearing]),
     now: &Now<'_>,
-) -> Result<Vec<f64>, BuildError> {
+) -> Result<ShaftLoads, BuildError> {
     // The effects ask for a bearing: any is right.
     let model = &bearings[0].model;
-    let mut sum = vec![0.0; shaft.n()];
+    let mut sum = ShaftLoads::none(shaft);
     for load in &scene.shaft.loads {
         let ([x, y, z], [about_x, about_y]) = (load.force, load.moment);
-        shaft.add_load(load.position, [x, y, z, about_x, about_y], &mut sum);
+        sum.add(&shaft.station(load.position), [x, y, z, about_x, about_y]);
     }
     let rigid = [None, None];
     let found = scene.effects.loads(Setting {
@@ -157,26 +159,26 @@ pub fn loads(
             // Its moment about the origin follows from its place on the shaft.
             let [x, y, ..] = of_unbalance.shaft;
             let position = unbalance.map_or(0.0, |unbalance| unbalance.position());
-            shaft.add_load(position, [x, y, 0.0, 0.0, 0.0], &mut sum);
+            sum.add(&shaft.station(position), [x, y, 0.0, 0.0, 0.0]);
             continue;
         }
         // The load point of a bearing's model is its origin: forces have no lever.
         effect.add_loads(model, now, &mut of_effects)?;
     }
-    shaft.add_load(scene.shaft.load_point, of_effects.shaft, &mut sum);
+    sum.add(&shaft.station(scene.shaft.load_point), of_effects.shaft);
     if let Some(gravity) = &scene.effects.gravity {
         let g = gravity.acceleration_at(now);
         match &scene.shaft.kind {
             ShaftKind::Beam(_) => {
                 let weight = shaft.weight(g);
-                sum.iter_mut().zip(weight).for_each(|(sum, w)| *sum += w);
+                sum.on_dofs.iter_mut().zip(weight).for_each(|(sum, w)| *sum += w);
             }
             ShaftKind::Rigid(rigid) => {
                 let own = (scene.shaft.load_point, rigid.mass);
                 let points = scene.shaft.masses.iter().map(|m| (m.position, m.mass));
                 for (position, mass) in points.chain([own]) {
                     let [x, y, z] = g.map(|a| mass * a);
-                    shaft.add_load(position, [x, y, z, 0.0, 0.0], &mut sum);
+                    sum.add(&shaft.station(position), [x, y, z, 0.0, 0.0]);
                 }
             }
         }
@@ -188,7 +190,7 @@ pub fn loads(
 }
 
 /// Adds the weight of the body on the shaft under a bearing, as of a rigid one.
-fn add_weight(shaft: &ShaftBody, bearing: &MountedBearing, g: [f64; 3], loads: &mut [f64]) {
+fn add_weight(shaft: &ShaftBody, bearing: &MountedBearing, g: [f64; 3], loads: &mut ShaftLoads) {
     let Some(inertia) = bearing.model.carried_inertia() else {
         return;
     };
@@ -201,5 +203,6 @@ fn add_weight(shaft: &ShaftBody, bearing: &MountedBearing, g: [f64; 3], loads: &
     let [x, y, z] = g.map(|a| inertia.mass * a);
     // The arm stands at the bearing: a beam has a node there.
     let about = [-moment * g[1], moment * g[0]];
-    shaft.add_load(position, [x, y, z, about[0], about[1]], loads);
+    loads.add(&shaft.station(position), [x, y, z, about[0], about[1]]);
+    loads.add_arm(g.map(|a| moment * a));
 }

@@ -7,6 +7,7 @@ use super::bodies::SharedLoads;
 use super::factors::KeptFactors;
 use super::step::ShaftStep;
 use crate::error::AssemblyError;
+use crate::loads::first_dofs;
 use crate::newton::Mount;
 use crate::shaft::times;
 use crate::side_by_side::of_each;
@@ -106,10 +107,11 @@ impl ShaftStep<'_> {
         let middle: Vec<f64> = q.iter().zip(&end).map(|(a, b)| 0.5 * (a + b)).collect();
         let elastic = times(n, &self.shaft.stiffness, &middle);
         let spin = self.spin_force(&end);
-        let own = |i: usize| self.load[i] + spin[i] - inertia[i] - elastic[i];
+        let load = &self.load.on_dofs;
+        let own = |i: usize| load[i] + spin[i] - inertia[i] - elastic[i];
         let mut residual: Vec<f64> = (0..n).map(own).collect();
         let mut scale = (0..n).fold(f64::MIN_POSITIVE, |m, i| {
-            m.max(self.as_force(i, self.load[i].abs().max(inertia[i].abs())))
+            m.max(self.as_force(i, load[i].abs().max(inertia[i].abs())))
         });
         let answer = |(part, mount): (&mut HeldPart<'_>, &Mount)| {
             let own = mount.place.into_bearing(mount.station.displacement(&end));
@@ -121,6 +123,7 @@ impl ShaftStep<'_> {
             mount.station.add_load(load.map(|f| -f), &mut residual);
             scale = scale.max(answer.force);
         }
+        self.add_levers(&answers, &end, &mut residual);
         let free = (0..n).filter(|&i| self.shaft.held[i].is_none());
         let error = free.fold(0.0f64, |m, i| m.max(self.as_force(i, residual[i].abs())));
         if !error.is_finite() {
@@ -133,6 +136,19 @@ impl ShaftStep<'_> {
             scale,
             answers,
         })
+    }
+
+    /// Adds what a rigid shaft that tilts has of all levers beyond those of a straight one.
+    fn add_levers(&self, answers: &[HeldAnswer], end: &[f64], residual: &mut [f64]) {
+        let on_bearing = |(mount, answer): (&Mount, &HeldAnswer)| {
+            let load = mount.place.orientation.turned(answer.load);
+            (mount.station, load)
+        };
+        let on_bearings = self.mounts.iter().zip(answers).map(on_bearing);
+        if let Some(levers) = self.load.beyond_straight(self.shaft, on_bearings) {
+            let more = levers.over(self.interval(), [self.start[0], end].map(first_dofs));
+            residual.iter_mut().zip(more).for_each(|(sum, more)| *sum += more);
+        }
     }
 
     /// The point along a step, halved until the residual does not grow.

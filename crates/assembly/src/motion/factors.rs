@@ -82,7 +82,7 @@ impl KeptFactors {
                 let mut moved = alone.moved(residual, &self.free);
                 let mut force = Vec::with_capacity(N_SHAFT * tangents.len());
                 for (mount, tangent) in step.mounts.iter().zip(tangents) {
-                    force.extend(applied(tangent, &mount.station.displacement(&moved)));
+                    force.extend(applied(tangent, &mount.station.moved(&moved)));
                 }
                 loads.solve(&mut force, 1);
                 for (column, f) in alone.columns.iter().zip(&force) {
@@ -109,7 +109,8 @@ impl KeptFactors {
         if !step.shaft.is_beam() {
             let mut whole = step.own_tangent();
             for (mount, tangent) in step.mounts.iter().zip(&tangents) {
-                mount.station.add_matrix(tangent, step.shaft.n(), &mut whole);
+                let station = mount.station.at(step.start[0]);
+                station.add_matrix(tangent, step.shaft.n(), &mut whole);
             }
             return Ok(Tangent::Whole(factored(step.shaft.n(), &whole, &self.free)?));
         }
@@ -152,7 +153,7 @@ impl ShaftAlone {
             }
         }
         for mount in step.mounts {
-            let motions = alone.columns.iter().map(|z| mount.station.displacement(z));
+            let motions = alone.columns.iter().map(|z| mount.station.moved(z));
             let motions: Vec<_> = motions.collect();
             for i in 0..N_SHAFT {
                 alone.compliance.extend(motions.iter().map(|motion| motion[i]));

@@ -90,16 +90,16 @@ impl ShaftLedger {
         let [kinetic, strain] = energies(step.shaft, end, velocity);
         let change: Vec<f64> = end.iter().zip(step.start[0]).map(|(a, b)| a - b).collect();
         let into = |(mount, answer): (&crate::newton::Mount, &HeldAnswer)| -> f64 {
-            let moved = mount
-                .place
-                .orientation
-                .turned(mount.station.displacement(&change));
+            let [from, to] = [step.start[0], end].map(|q| mount.station.displacement(q));
+            let moved = std::array::from_fn(|i| to[i] - from[i]);
+            let moved = mount.place.orientation.turned(moved);
             answer.load.iter().zip(moved).map(|(f, u)| f * u).sum()
         };
+        let by_tilt = step.load.over(step.shaft, step.interval(), [step.start[0], end]);
         let mut ledger = ShaftLedger {
             kinetic,
             strain,
-            load_work: self.load_work + work(&step.load, &change),
+            load_work: self.load_work + work(&step.load.on_dofs, &change) + work(&by_tilt, &change),
             spin_work: self.spin_work + work(&step.spin_force(end), &change),
             bearing_work: self.bearing_work + step.mounts.iter().zip(answers).map(into).sum::<f64>(),
             ..*self

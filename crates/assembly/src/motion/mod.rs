@@ -44,14 +44,15 @@ use self::step::ShaftStep;
 use crate::assembly::{Assembly, AssemblySolution};
 use crate::error::AssemblyError;
 use crate::housing::{HousedTogether, housed_together};
+use crate::loads::ShaftLoads;
 use crate::newton::Mount;
 use crate::side_by_side::of_each;
 
 /// Rounds for patches and frames before a part counts as failed.
 const MAX_ROUNDS: usize = 60;
 
-/// Loads on the dofs of the shaft, N and N m: their means over an interval about an instant.
-pub type LoadAt<'a> = dyn Fn(&Now<'_>) -> Result<Vec<f64>, AssemblyError> + Sync + 'a;
+/// Loads on the shaft: their means over an interval about an instant.
+pub type LoadAt<'a> = dyn Fn(&Now<'_>) -> Result<ShaftLoads, AssemblyError> + Sync + 'a;
 
 /// Velocities at which equilibria of bearings that roll follow each other.
 #[derive(Clone, Debug, PartialEq)]

@@ -1,7 +1,10 @@
 //! The shaft over a part of a step, without its bearings.
 
 use dynamics::stiffness::N_SHAFT;
+use dynamics::system::Interval;
+use ring::{Integrator, StepScheme};
 
+use crate::loads::ShaftLoads;
 use crate::newton::Mount;
 use crate::shaft::{ShaftBody, times};
 
@@ -17,8 +20,8 @@ pub struct ShaftStep<'a> {
     pub speeds: [f64; 2],
     /// Displacement and velocity at the start.
     pub start: [&'a [f64]; 2],
-    /// Mean load, N and N m.
-    pub load: Vec<f64>,
+    /// Mean loads.
+    pub load: ShaftLoads,
     /// Length by which tilts count, m.
     pub tilt_arm: f64,
 }
@@ -45,6 +48,14 @@ impl ShaftStep<'_> {
         let change = |(q0, q1): (&f64, &f64)| (from * q0 - to * q1) / self.dt;
         let change: Vec<f64> = self.start[0].iter().zip(end).map(change).collect();
         times(self.shaft.n(), &self.shaft.gyroscopic, &change)
+    }
+
+    /// The part, over which forces are means.
+    pub fn interval(&self) -> Interval {
+        Interval::Step(StepScheme {
+            integrator: Integrator::average_acceleration(),
+            dt: self.dt,
+        })
     }
 
     /// A load on a dof as a force, N.

@@ -7,6 +7,7 @@ mod stiffness;
 mod turning;
 mod whirl;
 
+use assembly::ShaftLoads;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -215,13 +216,18 @@ fn tied_pair(side: Side, ties: [Arc<SeatTie>; 2], order: [usize; 2]) -> Assembly
             model,
         }
     };
-    let mut load = vec![0.0; shaft.n()];
-    shaft.add_load(0.0, LOAD, &mut load);
-    Assembly {
+    let mut load = ShaftLoads::none(&shaft);
+    load.add(&shaft.station(0.0), LOAD);
+    let mut list = Assembly {
         bearings: order.map(bearing).into(),
         shaft,
         load,
+    };
+    // As on one body for both, also where each has its own.
+    if ties[0].carried().is_some() {
+        list.shaft.be_linear();
     }
+    list
 }
 
 const LOAD: [f64; 5] = [600.0, -200.0, 300.0, 0.0, 3.0];

@@ -169,7 +169,7 @@ fn differences_of(list: Assembly, least: f64) {
         let change = if dof < 3 { 2.0 } else { 2.0 * arm };
         let mut at = |sign: f64| {
             list.load.clone_from(&load);
-            list.load[dof] += sign * change;
+            list.load.on_dofs[dof] += sign * change;
             from(&mut solver, &mut list, &solution).shaft.displacements
         };
         let (low, high) = (at(-1.0), at(1.0));

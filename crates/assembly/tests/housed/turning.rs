@@ -1,5 +1,6 @@
 //! Bearings in one body or on one that turns, in equilibria over time.
 
+use assembly::ShaftLoads;
 use dynamics::Pose;
 use dynamics::effects::Now;
 
@@ -68,14 +69,14 @@ fn a_pair_in_one_housing_is_the_same_a_ball_pitch_on() {
 fn a_pair_on_one_elastic_shaft_turns_with_it() {
     let turned_load = |list: &mut Assembly, pitch: f64| {
         let (sin, cos) = pitch.sin_cos();
-        let load = std::mem::take(&mut list.load);
-        list.load = vec![
+        let load = std::mem::take(&mut list.load.on_dofs);
+        list.load = ShaftLoads::at_origin(vec![
             cos * load[0] - sin * load[1],
             sin * load[0] + cos * load[1],
             load[2],
             cos * load[3] - sin * load[4],
             sin * load[3] + cos * load[4],
-        ];
+        ]);
     };
     let pitch = std::f64::consts::TAU / BALLS as f64;
     let mut list = tied_pair(Side::Inner, on_one(true, HELD_BELOW), [0, 1]);

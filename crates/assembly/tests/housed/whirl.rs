@@ -1,6 +1,7 @@
 //! Modes over the speed of two bearings with elastic bodies under their rings: at rest the natural modes, a body that
 //! hardly yields, the order of the list.
 
+use assembly::ShaftLoads;
 use assembly::modes::modes;
 use assembly::stiffness::LinearAssembly;
 use assembly::whirl::TurningAssembly;
@@ -36,6 +37,7 @@ fn over_speed(list: &mut Assembly, speed: f64, least: f64) -> Vec<WhirlMode> {
 
 fn heavy(mut list: Assembly) -> Assembly {
     list.shaft = ShaftBody::rigid(HEAVY, [None; 5]);
+    list.be_linear_in_bodies();
     list
 }
 
@@ -143,7 +145,7 @@ fn over_the_speed_a_list_of_one_is_the_bearing_alone() {
     let mut list = tied_pair(Side::Inner, on_two(), [0, 1]);
     list.bearings.truncate(1);
     list.shaft = ShaftBody::rigid(RigidInertia::default(), [None; 5]);
-    list.load = vec![50.0, -20.0, 400.0, 0.0, 0.3];
+    list.load = ShaftLoads::at_origin(vec![50.0, -20.0, 400.0, 0.0, 0.3]);
     let model = &mut list.bearings[0].model;
     model.shaft_mass = HEAVY.mass;
     model.shaft_inertia.transverse = HEAVY.transverse;
@@ -152,11 +154,14 @@ fn over_the_speed_a_list_of_one_is_the_bearing_alone() {
     let mut solver = AssemblySolver::new(&list).unwrap();
     let solution = solver.solve(&mut list, None).unwrap_or_else(|e| panic!("{e}"));
     let linear = LinearAssembly::new(&list, &solver, &solution, DampingLaws::default()).unwrap();
+    // A bearing alone has the loads of its shaft, whose moments change with the tilt.
+    let mut own = linear.bearings.into_iter().next().unwrap();
+    own.load_stiffness = linear.of_levers;
     let model = &mut list.bearings[0].model;
     model.shaft = [ShaftDof::Free; 5];
     let alone = TurningAssembly::of_one("alone", model).unwrap().unwrap();
     let stands = (solver.of_bearing(0), &solution.bearings[0]);
-    let equations = alone.equations_of_one(model, stands, &linear.bearings[0], SPEED);
+    let equations = alone.equations_of_one(model, stands, &own, SPEED);
     let mut found = equations.unwrap().modes().unwrap();
     found.retain(|mode| mode.frequency > 0.0 && mode.shaft_share > 0.3);
     assert!(found.len() > 4 && found.len() == expected.len());

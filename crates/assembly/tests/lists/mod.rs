@@ -1,5 +1,6 @@
 //! Lists of 7010C on a shaft.
 
+use assembly::ShaftLoads;
 use assembly::shaft::ShaftBody;
 use assembly::{Assembly, MountedBearing, Orientation, Seating};
 use dynamics::{ContactMode, Hold, Model};
@@ -42,7 +43,7 @@ pub fn on_shaft(shaft: ShaftBody, places: &[At], make: impl Fn() -> Model) -> As
             model,
         }
     };
-    let load = vec![0.0; shaft.n()];
+    let load = ShaftLoads::none(&shaft);
     Assembly {
         bearings: places.iter().enumerate().map(bearing).collect(),
         shaft,
