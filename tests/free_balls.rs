@@ -56,6 +56,33 @@ fn tables_of_free_balls_agree() {
     assert_close("cage", cage[0], rolling, 0.01);
 }
 
+/// Wrong: equilibria of free balls through a point at which nothing turns would have tables of two widths, and end
+/// there. Balls that stand have no speed and no friction; to both sides of it all is mirrored.
+#[test]
+fn equilibria_of_free_balls_pass_a_standstill() {
+    let free =
+        "[balls]\nmotion = \"free\"\n\n[effects.traction]\nlaw = \"coulomb\"\nfriction = 0.07\n\n[speed]\n";
+    let swept = "inner = \"3000 rpm\"\n\n[sweep]\nkey = \"speed.inner\"\n\
+                 values = [\"-3000 rpm\", \"0 rpm\", \"3000 rpm\"]";
+    let in_time = "inner = { times = [\"0 s\", \"2 ms\"], values = [\"-3000 rpm\", \"3000 rpm\"] }\n\n\
+                   [quasi_static]\nduration = \"2 ms\"\nstep = \"1 ms\"";
+    for analysis in [swept, in_time] {
+        let dir = Dir::with_scene(&with_line("[static]", "[static]", &format!("{free}{analysis}")));
+        dir.run("out", &RIGID);
+        let [balls, shaft] = ["balls", "shaft"].map(|name| Table::read(&dir, &format!("out/{name}.csv")));
+        let (orbits, torques) = (
+            balls.column("orbit_rad_per_s"),
+            shaft.column("friction_torque_n_m"),
+        );
+        let per_step = orbits.len() / 3;
+        assert!(orbits[per_step..2 * per_step].iter().all(|orbit| *orbit == 0.0));
+        assert_eq!(torques[1], 0.0);
+        assert!(torques[2] > 0.0);
+        assert_close("torque", torques[0], -torques[2], 1e-6);
+        assert_close("orbit", orbits[0], -orbits[2 * per_step], 1e-2);
+    }
+}
+
 /// Wrong: forces of the cage would stand in one table and not in the other, or its energy in none.
 #[test]
 fn tables_of_a_cage_agree() {

@@ -89,6 +89,11 @@ impl<'a> LoadCase<'a> {
         self.with_now(u, |now| SteadyBalls::of(self.model, now))
     }
 
+    /// How free balls that nothing drives are taken to roll in `u`; None where they are not free.
+    pub fn undriven(&self, u: &Displacements) -> Option<SteadyBalls> {
+        self.with_now(u, |now| SteadyBalls::undriven(self.model, now))
+    }
+
     /// The instant with contacts and balls as they stand in `u`.
     fn with_now<T>(&self, u: &Displacements, see: impl FnOnce(&Now) -> T) -> T {
         let states = self.parts.states_at(u);

@@ -4,7 +4,7 @@ use body::BodyLoad;
 use contact::{LoadedPatch, Meridian, Side};
 use ring::vectors::dot;
 
-use crate::balls::{BallResult, ContactResult};
+use crate::balls::{BallResult, ContactResult, Friction};
 use crate::bearing::{BearingParts, CONTACTS, SHAFT, SlidingSeat};
 use crate::displacements::Displacements;
 use crate::effects::Loads;
@@ -35,8 +35,10 @@ pub struct StaticSolution {
     pub pose: Pose,
     /// Results of every ball.
     pub balls: Vec<BallResult>,
-    /// How free balls roll.
+    /// How free balls roll; None where they are not free, or nothing drives them.
     pub steady: Option<SteadyBalls>,
+    /// Friction of free balls; None where balls are not free.
+    pub friction: Option<Friction>,
     /// Elastic nodal displacements of flexible rings relative to shaft or housing, in the frame of the ring's mesh,
     /// which may have turned, m, `[n_nodes][3]` flat.
     pub elastic: [Option<Vec<f64>>; 2],
@@ -98,9 +100,11 @@ impl StaticSolution {
         let (finite_work, finite_load) = finite_work(parts, &finite, &forces);
         let mut balls = ball_results(model, parts, &states, &u);
         let steady = case.steady(&u)?;
-        if let Some(steady) = &steady {
+        let undriven = if steady.is_none() { case.undriven(&u) } else { None };
+        let rolling = steady.as_ref().or(undriven.as_ref());
+        if let Some(rolling) = rolling {
             for (i, ball) in balls.iter_mut().enumerate() {
-                ball.free = Some(steady.result(i, ball.azimuth_rad));
+                ball.free = Some(rolling.result(i, ball.azimuth_rad));
             }
         }
         let load_work = ball_work(parts, &u)
@@ -112,6 +116,7 @@ impl StaticSolution {
         Ok(StaticSolution {
             warnings: all_warnings(&case, &rings.footprints, &forces, &balls),
             balls,
+            friction: rolling.map(SteadyBalls::friction),
             steady,
             work_defect: load_work + dot(&reaction, &u.shaft)
                 - 2.0 * strain_energy

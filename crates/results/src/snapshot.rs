@@ -35,12 +35,12 @@ impl Snapshot {
             balls: solution.balls.clone(),
             // Free balls have each its own.
             spin: rolling
-                .filter(|_| solution.steady.is_none())
+                .filter(|_| solution.friction.is_none())
                 .map(|r| r.spin(solution.pose.now.time)),
             shaft: solution.displacements.shaft,
             seat: solution.parts.seat.as_ref().map(|_| solution.displacements.seat),
             reaction: Some(solution.shaft_reaction),
-            friction: solution.steady.as_ref().map(|steady| steady.friction()),
+            friction: solution.friction,
             cage: None,
             energies: vec![
                 ("strain", solution.strain_energy),

@@ -34,27 +34,14 @@ impl SteadyBalls {
     /// How the balls of a model roll at an instant; None where none does: they are not free, nothing is known of the
     /// contacts yet, no ring turns, there is no friction, or no ball is loaded by both rings.
     pub fn of(model: &Model, now: &Now) -> Result<Option<SteadyBalls>, DynamicsError> {
-        let speeds = model.effects.iter().find_map(|effect| effect.rolling_speeds());
-        let (Some(seen), Some(angles), Some(speeds), Some(traction)) =
-            (now.seen, now.angles, speeds, model.traction())
+        let Some(FreeRow {
+            balls,
+            speeds,
+            kinematic_orbit,
+        }) = FreeRow::of(model, now)
         else {
             return Ok(None);
         };
-        let kinematic_orbit = Kinematics::new(&model.geometry, [0.0; 2]).cage_speed(speeds, now.time);
-        let speeds = Side::BOTH.map(|side| speeds.of(side).at(now.time));
-        let drag = seen.drag_share * drag(model);
-        let balls: Vec<SteadyBall<'_>> = (0..model.geometry.n_balls)
-            .map(|ball| SteadyBall {
-                out: model.geometry.ball_centre().radial + seen.balls[ball].radial,
-                inertia: model.ball_inertia(),
-                drag,
-                contacts: Side::BOTH
-                    .map(|side| contact(model, side, speeds[side.index()], (seen, angles, ball))),
-                traction,
-                on_strips: Side::BOTH
-                    .map(|side| on_strips(model, traction, (seen, angles), 2 * ball + side.index())),
-            })
-            .collect();
         let solve = |ball: usize, cage: Option<f64>| {
             balls[ball]
                 .solve(cage)
@@ -84,14 +71,38 @@ impl SteadyBalls {
                 ..SteadyRolling::default()
             }));
         }
+        let lines = |ball: usize| lines_of(model, now, ball);
         Ok(Some(SteadyBalls {
-            balls: all,
+            lines: (0..balls.len()).map(lines).collect(),
             contacts: balls.iter().map(|ball| ball.contacts).collect(),
-            lines: (0..balls.len())
-                .map(|ball| Side::BOTH.map(|side| lines(model, (seen, angles), 2 * ball + side.index())))
-                .collect(),
+            balls: all,
             kinematic_orbit,
         }))
+    }
+
+    /// Free balls that no friction drives, because no ring turns, both load no ball, or friction is zero: they go round
+    /// and turn as without slip. None where balls are not free.
+    pub fn undriven(model: &Model, now: &Now) -> Option<SteadyBalls> {
+        let FreeRow {
+            balls,
+            kinematic_orbit,
+            ..
+        } = FreeRow::of(model, now)?;
+        let rolls = |ball: &SteadyBall<'_>| {
+            let [orbit, turning @ ..] = ball.pure_rolling();
+            SteadyRolling {
+                orbit,
+                turning,
+                out: ball.out,
+                ..SteadyRolling::default()
+            }
+        };
+        Some(SteadyBalls {
+            balls: balls.iter().map(rolls).collect(),
+            contacts: balls.iter().map(|ball| ball.contacts).collect(),
+            lines: vec![BySide::default(); balls.len()],
+            kinematic_orbit,
+        })
     }
 
     /// Adds tractions and centrifugal forces.
@@ -171,6 +182,40 @@ impl SteadyBalls {
     }
 }
 
+/// Free balls where they stand, and what turns them.
+struct FreeRow<'m> {
+    balls: Vec<SteadyBall<'m>>,
+    /// Speeds of the rings, rad/s.
+    speeds: BySide<f64>,
+    /// Speed round the axis of pure rolling at the free contact angle, rad/s.
+    kinematic_orbit: f64,
+}
+
+impl<'m> FreeRow<'m> {
+    /// None where balls are not free, or nothing is known of the contacts yet.
+    fn of(model: &'m Model, now: &Now) -> Option<FreeRow<'m>> {
+        let speeds = model.effects.iter().find_map(|effect| effect.rolling_speeds())?;
+        let (seen, angles, traction) = (now.seen?, now.angles?, model.traction()?);
+        let kinematic_orbit = Kinematics::new(&model.geometry, [0.0; 2]).cage_speed(speeds, now.time);
+        let speeds = Side::BOTH.map(|side| speeds.of(side).at(now.time));
+        let drag = seen.drag_share * drag(model);
+        let ball = |ball: usize| SteadyBall {
+            out: model.geometry.ball_centre().radial + seen.balls[ball].radial,
+            inertia: model.ball_inertia(),
+            drag,
+            contacts: Side::BOTH.map(|side| contact(model, side, speeds[side.index()], (seen, angles, ball))),
+            traction,
+            on_strips: Side::BOTH
+                .map(|side| on_strips(model, traction, (seen, angles), 2 * ball + side.index())),
+        };
+        Some(FreeRow {
+            balls: (0..model.geometry.n_balls).map(ball).collect(),
+            speeds,
+            kinematic_orbit,
+        })
+    }
+}
+
 /// Drag of a ball over the square of its speed, N s^2/m^2.
 pub fn drag(model: &Model) -> f64 {
     model.effects.iter().map(|effect| effect.drag(model)).sum()
@@ -224,6 +269,14 @@ fn on_strips(
     let half_width = model.hertz[site % 2].semi_axes(seen.forces[site]).groove;
     let approach = (seen.approaches[site], 0.0);
     Some(strips.places(&traction.places, half_width, approach, angles[site]))
+}
+
+/// Where the loads of a ball's contacts on strips lie; none of Hertz's ellipse.
+fn lines_of(model: &Model, now: &Now, ball: usize) -> BySide<Vec<PressureLine>> {
+    let (Some(seen), Some(angles)) = (now.seen, now.angles) else {
+        return BySide::default();
+    };
+    Side::BOTH.map(|side| lines(model, (seen, angles), 2 * ball + side.index()))
 }
 
 /// Where the load of a contact on strips lies; none of Hertz's ellipse.

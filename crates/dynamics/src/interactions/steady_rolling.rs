@@ -16,7 +16,9 @@
 //!
 //! Solved by Newton's method on the motion towards the steady state: implicit Euler steps of the ball's own inertia,
 //! which grow as the residual falls (pseudo-transient continuation; Kelley and Keyes, SIAM J. Numer. Anal. 35 (1998)
-//! 508). Where only one contact is loaded nothing drives the ball round: a cage does, at a given speed.
+//! 508). Where the way leads over larger moments, as where friction falls with slip and the axis of the ball turns far,
+//! the motion itself is followed: steps are as long as their equations hold. Where only one contact is loaded nothing
+//! drives the ball round: a cage does, at a given speed.
 //!
 //! Cost: two tractions over 45 places per step, some tens of steps.
 
@@ -105,6 +107,13 @@ const LONGEST_STEP: f64 = 1e6;
 const LEAST_STEP: f64 = 1e-14;
 /// Growth of the residual beyond which a step is taken again, shorter.
 const GROWTH: f64 = 1.5;
+/// Of steps that follow the motion: most of them, the first one, s, what may be left of the moments at its start, and
+/// by what it is shortened and lengthened.
+const MOST_FOLLOWED: usize = 1000;
+const FIRST_FOLLOWED: f64 = 1e-6;
+const LEFT: f64 = 0.3;
+const SHORTER: f64 = 0.3;
+const LONGER: [f64; 2] = [1.2, 2.0];
 /// Passes for the speed of rolling, on which the slope at small slip depends.
 const CREEP_PASSES: usize = 4;
 
@@ -270,6 +279,7 @@ impl SteadyBall<'_> {
     /// The steady state from `y`, led by creep that is softer at first, in steps as large as it bears; `held` keeps the
     /// speed round the axis.
     fn settle(&self, mut y: [f64; N], small: [f64; 2], held: bool) -> Result<[f64; N], f64> {
+        let from = y;
         let mut last = self.step_on(y, small, held);
         let (mut soft, mut step) = (SOFTEST * SOFTER, SOFTER);
         while last.is_err() && step > LEAST_SOFTER {
@@ -280,13 +290,51 @@ impl SteadyBall<'_> {
                 Err(left) => (last, step) = (Err(left), step.sqrt()),
             }
         }
-        last
+        last.or_else(|left| self.follow(from, small, held).ok_or(left))
+    }
+
+    /// The steady state to which the ball comes from `y` by its own motion; None where it does not settle.
+    fn follow(&self, mut y: [f64; N], small: [f64; 2], held: bool) -> Option<[f64; N]> {
+        let inertia = self.inertias();
+        let (mut residual, mut slope) = self.residual(&y, small);
+        let (mut dt, mut best, mut stalled) = (FIRST_FOLLOWED, f64::INFINITY, 0);
+        for _ in 0..MOST_FOLLOWED {
+            let now = self.size(&residual, held);
+            if now <= TOLERANCE || (stalled > 6 && now <= ACCEPTED) {
+                return Some(y);
+            }
+            let rates = inertia.map(|i| i / dt);
+            let taken = implicit_step(&residual, &slope, &rates, held).and_then(|step| {
+                let next: [f64; N] = std::array::from_fn(|i| y[i] + step[i]);
+                let (found, growth) = self.residual(&next, small);
+                let defect = std::array::from_fn(|i| rates[i] * step[i] - found[i]);
+                let left = self.size(&defect, held) / now;
+                (left <= LEFT).then_some((next, found, growth, left))
+            });
+            let Some((next, found, growth, left)) = taken else {
+                dt *= SHORTER;
+                if dt < LEAST_STEP {
+                    return None;
+                }
+                stalled += 1;
+                continue;
+            };
+            dt = (dt * LONGER[usize::from(left < 0.1 * LEFT)]).min(LONGEST_STEP);
+            stalled = if now < 0.5 * best { 0 } else { stalled + 1 };
+            best = best.min(now);
+            (y, residual, slope) = (next, found, growth);
+        }
+        None
+    }
+
+    fn inertias(&self) -> [f64; N] {
+        let BallInertia { mass, moment } = self.inertia;
+        [mass * self.out * self.out, moment, moment, moment]
     }
 
     /// Steps of the ball's inertia towards the steady state from `y`.
     fn step_on(&self, mut y: [f64; N], small: [f64; 2], held: bool) -> Result<[f64; N], f64> {
-        let BallInertia { mass, moment } = self.inertia;
-        let inertia = [mass * self.out * self.out, moment, moment, moment];
+        let inertia = self.inertias();
         let (mut residual, mut slope) = self.residual(&y, small);
         let mut now = self.size(&residual, held);
         let (mut dt, mut best, mut stalled) = (FIRST_STEP, now, 0);

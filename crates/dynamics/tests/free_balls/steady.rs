@@ -1,12 +1,15 @@
 //! Equilibria in which every ball rolls steadily under friction.
 
-use contact::film::Lubricant;
+use contact::SemiAxes;
+use contact::film::{FilmContact, Lubricant};
 use dynamics::balls::BallResult;
 use dynamics::effects::RadialForce;
 use dynamics::effects::ball_drag::BallDrag;
-use dynamics::interactions::steady_rolling::SteadyRolling;
-use dynamics::interactions::traction::{Creep, LimitingShear, Traction, TractionLaw};
+use dynamics::interactions::steady_rolling::{SteadyBall, SteadyContact, SteadyRolling};
+use dynamics::interactions::traction::law::SlipTable;
+use dynamics::interactions::traction::{Creep, Ellipse, LimitingShear, PatchPoints, Traction, TractionLaw};
 use dynamics::kinematics::{RingSpeeds, Speed};
+use dynamics::model::BallInertia;
 use dynamics::motion::Motion;
 use dynamics::{ShaftDof, StaticSolution};
 use input::Schedule;
@@ -342,5 +345,84 @@ fn equilibria_that_drag_has_moved_are_found() {
             rolling += 1;
         }
         assert!(rolling >= 8, "{rolling}");
+    }
+}
+
+/// A ball of a 7204 of 40 deg at 10 000 rpm of the outer ring, with forces, N, and contact angles, deg, inner first.
+fn fast_ball<'t>(traction: &'t Traction, forces: [f64; 2], angles: [f64; 2]) -> SteadyBall<'t> {
+    let diameter: f64 = 7.938e-3;
+    let mass = 7800.0 * std::f64::consts::PI / 6.0 * diameter.powi(3);
+    let contact = |side: usize| {
+        let (sign, speed) = [(-1.0, 0.0), (1.0, rpm(10_000.0))][side];
+        let (force, angle) = (forces[side], angles[side].to_radians());
+        // Semi-axes and pressure of 10 N, which grow with the root of third order.
+        let (axes, pressure) = [([2.83e-4, 3.08e-5], 5.5e8), ([2.34e-4, 4.05e-5], 5.0e8)][side];
+        let size = (force / 10.0).cbrt();
+        SteadyContact {
+            normal: [sign * angle.cos(), sign * angle.sin()],
+            lever: 0.5 * diameter,
+            force,
+            ellipse: Ellipse {
+                semi_axes: SemiAxes {
+                    groove: size * axes[0],
+                    rolling: size * axes[1],
+                },
+                radius: 4e-3,
+                peak_pressure: size * pressure,
+                film: 0.0,
+            },
+            film: FilmContact {
+                radius: 4e-3,
+                modulus: 2.3e11,
+                ellipticity: 8.0,
+            },
+            speed,
+            shear_modulus: 8e10,
+        }
+    };
+    SteadyBall {
+        out: 16.75e-3,
+        inertia: BallInertia {
+            mass,
+            moment: 0.1 * mass * diameter * diameter,
+        },
+        drag: 0.0,
+        contacts: [contact(0), contact(1)],
+        traction,
+        on_strips: [None, None],
+    }
+}
+
+/// Wrong: where friction falls with slip or grows slowly, a light fast ball whose axis turns far from that of rolling
+/// would find no steady state, and the equilibrium of its bearing would be refused. Its own motion leads to one.
+#[test]
+fn light_fast_balls_come_to_roll_under_any_law() {
+    let table = |slips: &[f64], coefficients: &[f64]| Traction {
+        law: TractionLaw::Table(SlipTable::new(slips.to_vec(), coefficients.to_vec())),
+        creep: Creep::Elastic,
+        places: PatchPoints::new([3, 15]),
+    };
+    let laws = [
+        table(&[0.0, 0.05, 1.0], &[0.0, 0.06, 0.04]),
+        table(&[0.0, 0.05, 1.0], &[0.0, 0.05, 0.05]),
+        table(&[0.0, 0.5, 10.0], &[0.0, 0.06, 0.04]),
+        coulomb(0.05, Creep::Elastic),
+    ];
+    for traction in &laws {
+        for inner in [0.05, 0.5, 2.0, 6.0, 25.0, 140.0] {
+            for angle in [42.0, 50.0, 60.0, 70.0] {
+                for cage in [None, Some(516.0), Some(600.0)] {
+                    let ball = fast_ball(traction, [inner, inner + 7.5], [angle, 60.0 - 0.5 * angle]);
+                    let found = ball.solve(cage);
+                    let case = format!("{:?} {inner} N {angle} deg {cage:?}", traction.law);
+                    let rolls = found.unwrap_or_else(|left| panic!("{case}: {left:e}")).unwrap();
+                    let net: f64 = rolls.tractions.iter().map(|traction| traction.action[0]).sum();
+                    assert!(
+                        cage.is_some() || net.abs() < 1e-8 * (inner + 7.5),
+                        "{case}: {net:e}"
+                    );
+                }
+            }
+        }
     }
 }
