@@ -10,7 +10,7 @@ use comm::print;
 use results::bodies::where_bodies_are;
 use results::export::{csv, integration_points, vtu};
 use results::failure::Failure;
-use results::summary::{bodies_shown_in, read_summary};
+use results::summary::{bodies_shown_in, read_summary, require_known_summary};
 use results::whole::{make_output_folder, require_free, write_new};
 
 /// File of the times of all steps.
@@ -79,6 +79,7 @@ impl Export {
 
     /// The committed steps that were asked for.
     pub fn chosen(&self, committed: &[u64]) -> Result<Vec<u64>, Failure> {
+        require_known_summary(&self.dir)?;
         let (Some(first), Some(last)) = (committed.first(), committed.last()) else {
             return Err(checkpoint::CheckpointError::NoSteps {
                 path: self.dir.clone(),
