@@ -66,8 +66,8 @@ impl Export {
     /// Says how many steps were written.
     pub fn say_written(&self, n_steps: usize) {
         print::line(format_args!(
-            "{n_steps} {} as {} in {}",
-            if n_steps == 1 { "step" } else { "steps" },
+            "{} as {} in {}",
+            print::counted(n_steps, "step"),
             self.to.extension(),
             self.folder().display()
         ));
@@ -86,6 +86,10 @@ impl Export {
             }
             .into());
         };
+        let range = |first: &u64, last: &u64| match first == last {
+            true => first.to_string(),
+            false => format!("from {first} to {last}"),
+        };
         let wanted = self.steps.clone().unwrap_or(*first..=*last);
         let steps: Vec<u64> = committed
             .iter()
@@ -94,11 +98,13 @@ impl Export {
             .collect();
         if steps.is_empty() {
             return Err(anyhow!(
-                "{} has no step from {} to {}; it has {} steps from {first} to {last}",
+                "{} has no step {}; it has {}",
                 self.dir.display(),
-                wanted.start(),
-                wanted.end(),
-                committed.len()
+                range(wanted.start(), wanted.end()),
+                match committed {
+                    [only] => format!("step {only} alone"),
+                    all => format!("{} steps {}", all.len(), range(first, last)),
+                }
             )
             .into());
         }
