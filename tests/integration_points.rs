@@ -207,7 +207,13 @@ fn the_forecast_counts_the_cells() {
 fn packs_and_exports_keep_it() {
     let dir = moved();
     let (before, grid) = (step(&dir, "own", 5), read_mesh(&dir.path("own")).unwrap());
-    assert_eq!(dir.raceway(&["pack", "own", "--keep", "1"]).code, Some(0));
+    let packed = dir.raceway(&["pack", "own", "--keep", "1"]);
+    assert_eq!(packed.code, Some(0), "{}", packed.stderr);
+    assert!(
+        packed.stdout.contains(" packed, 1 pack in own;"),
+        "{}",
+        packed.stdout
+    );
     assert!(!dir.path("own/step_000005.hdf").exists());
     assert!(read_any_step(&dir.path("own"), 5).unwrap() == before);
     let outcome = dir.raceway(&["export", "own", "--to", "csv", "--steps", "5"]);

@@ -43,6 +43,30 @@ fn succeeds(outcome: Outcome) {
     assert_eq!(outcome.code, Some(0), "{}", outcome.stderr);
 }
 
+/// Wrong: a shaft whose inertia was forgotten would look like a solution that was not found, and a script would try
+/// again with other settings of the solver.
+#[test]
+fn a_shaft_without_inertia_is_wrong_input() {
+    let dir = damped_rotor();
+    for (out, none, key) in [
+        ("mass", &["shaft.mass=\"0 kg\""][..], "shaft.mass"),
+        (
+            "tilt",
+            &[
+                "shaft.transverse_inertia=\"0 kg m2\"",
+                "shaft.polar_inertia=\"0 kg m2\"",
+            ],
+            "shaft.transverse_inertia",
+        ),
+    ] {
+        let sets: Vec<&str> = none.iter().flat_map(|argument| ["--set", argument]).collect();
+        let outcome = campbell(&dir, out, ["0 N", "1 N s/m"], &sets);
+        let said = format!("is free and has no inertia, so it has no modes at speed; give {key}, or lock it");
+        assert!(outcome.stderr.contains(&said), "{}", outcome.stderr);
+        assert_eq!(outcome.code, Some(2), "{}", outcome.stderr);
+    }
+}
+
 /// Wrong: balls that creep back would stand in the place of the modes of the shaft, at the 0 Hz of round-off.
 #[test]
 fn overdamped_balls_leave_the_modes_of_the_shaft() {

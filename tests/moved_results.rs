@@ -132,3 +132,52 @@ fn a_scene_by_its_full_path_keeps_that_name() {
     resumed(&dir, &["again", "--step", "10"]);
     assert_eq!(summary(&dir, "again")["scene"], "scene.toml");
 }
+
+/// Wrong: keys of another program, or of a later one, would be shown as numbers of this run, or be missing without a
+/// word.
+#[test]
+fn a_summary_of_another_schema_is_refused() {
+    let dir = moved();
+    copy(&dir, "whole", "kept");
+    let own = dir.text("kept/summary.json");
+    let commands: [&[&str]; 6] = [
+        &["info", "kept"],
+        &["plot", "kept"],
+        &["report", "kept"],
+        &["life", "kept"],
+        &["export", "kept", "--to", "csv"],
+        &["resume", "kept"],
+    ];
+    for (text, said) in [
+        (
+            own.replacen("\"schema\": 1", "\"schema\": 7", 1),
+            "kept/summary.json has schema 7, of version ",
+        ),
+        (
+            "{\"status\": \"finished\"}".to_string(),
+            "kept/summary.json has no schema; this program",
+        ),
+    ] {
+        assert!(text != own);
+        dir.write("kept/summary.json", &text);
+        for command in commands {
+            let outcome = dir.raceway(command);
+            assert_eq!(outcome.code, Some(2), "{command:?}: {}", outcome.stderr);
+            assert!(outcome.stderr.contains(said), "{command:?}: {}", outcome.stderr);
+        }
+    }
+    // A summary of another version that has the same keys is read, with a word on it.
+    let version = format!("\"version\": \"{}\"", env!("CARGO_PKG_VERSION"));
+    assert!(own.contains(&version));
+    dir.write(
+        "kept/summary.json",
+        own.replacen(&version, "\"version\": \"0.0.1\"", 1),
+    );
+    for command in [["plot", "kept"], ["report", "kept"]] {
+        let outcome = dir.raceway(&command);
+        assert_eq!(outcome.code, Some(0), "{}", outcome.stderr);
+        let said = "warning: kept/summary.json was written by version 0.0.1 of the program, this is ";
+        assert!(outcome.stderr.contains(said), "{}", outcome.stderr);
+    }
+    assert_eq!(dir.raceway(&["resume", "kept"]).code, Some(0));
+}

@@ -115,3 +115,13 @@ fn an_offset_presses_those_bearings_alone_that_it_names() {
     assert!(floating.unwrap().abs() < 0.01 * two.unwrap().abs(), "{forces:?}");
     assert_close("front", three.unwrap(), two.unwrap(), 0.02);
 }
+
+/// Wrong: the unit of the largest ball force would stand below another column of the table of bearings.
+#[test]
+fn units_of_a_list_stand_below_their_headings() {
+    let dir = pair("[static]");
+    let said = succeeds(&dir, &["run", "pair.toml", "--out", "out"]).stdout;
+    let end_of = |text: &str| said.lines().find_map(|line| Some(line.find(text)? + text.len()));
+    let unit = end_of("  N   balls").expect("the line of units");
+    assert_eq!(end_of("  largest ball"), Some(unit - "   balls".len()), "{said}");
+}

@@ -243,7 +243,7 @@ fn spectra_refuse_what_they_cannot_show() {
     );
     refused(
         &["out", "--probe", "x_m", "--envelope", "9..2"],
-        "expected two frequencies in Hz such as 2000..8000",
+        "expected two frequencies in Hz, the lower one first, such as 2000..8000",
     );
     refused(
         &["out", "--probe", "x_m", "--envelope", "1e3..1e6"],
@@ -286,7 +286,7 @@ fn steps_that_skip_a_surface_are_warned_of() {
         "a ball passes the edge of spall 1 of the outer ring within ",
         "waves of order 400 of the inner ring are felt with 0.",
         // 668.7 rad/s, which is 106.43 Hz, and 30 waves.
-        "a raceway passes a wave of order 30 of ball 3 in 313.19",
+        "a raceway passes a wave of order 30 of ball 3 in 313.2 us",
     ] {
         assert!(said.contains(part), "{said}\nhas no\n{part}");
     }

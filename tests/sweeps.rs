@@ -252,6 +252,27 @@ fn the_steel_of_rigid_rings_can_be_swept() {
     assert!(z[1] < z[0], "stiffer rings must yield less: {z:?}");
 }
 
+/// Wrong: under a force along y the table on the screen would have the small x of the shaft and not its y.
+#[test]
+fn a_sweep_prints_all_that_the_shaft_does() {
+    let dir = rigid_sweep("effects.axial_force.value", "[\"2 kN\", \"3 kN\"]");
+    let across = [
+        "--set",
+        "effects.radial_force={value=\"1 kN\", direction=\"90 deg\"}",
+    ];
+    let outcome = dir.raceway(&[&["run", "scene.toml", "--out", "out"], &RIGID[..], &across].concat());
+    assert_eq!(outcome.code, Some(0), "{}", outcome.stderr);
+    let lines: Vec<&str> = outcome.stdout.lines().collect();
+    let head = "effects.axial_force.value_n    x um     y um     z um  tilt_x urad  tilt_y urad";
+    let first = 1 + lines.iter().position(|line| line.contains(head)).unwrap();
+    let shaft = Table::read(&dir, "out/shaft.csv");
+    let printed = |line: &str| line.split_whitespace().nth(2).map(|cell| cell.parse().unwrap());
+    for (line, y) in lines[first..].iter().zip(shaft.column("y_m")) {
+        assert_within(line, printed(line).unwrap(), 1e6 * y, 1e-3);
+        assert!(y > 1e-6, "{y}");
+    }
+}
+
 /// If this failed, a reader would not know which points of a sweep a warning means.
 #[test]
 fn warnings_of_a_sweep_name_their_point() {

@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 use std::path::Path;
 
-use comm::print;
+use comm::print::{self, counted};
 use contact::BearingGeometry;
 use dynamics::kinematics::Kinematics;
 use dynamics::motion::check_supported;
@@ -85,12 +85,16 @@ fn print_analysis(scene: &Scene) {
     match &scene.analysis {
         Analysis::Static => print::line(format_args!("analysis static")),
         Analysis::QuasiStatic(quasi) => print::line(format_args!(
-            "analysis quasi-static, {} steps of {} s, fields every {} steps",
-            quasi.n_steps, quasi.step, quasi.output_every
+            "analysis quasi-static, {} of {} s, fields every {}",
+            counted(quasi.n_steps, "step"),
+            quasi.step,
+            counted(quasi.output_every, "step")
         )),
         Analysis::Dynamic(dynamic) => print::line(format_args!(
-            "analysis dynamic, {} steps of {} s, fields every {} steps",
-            dynamic.n_steps, dynamic.step, dynamic.output_every
+            "analysis dynamic, {} of {} s, fields every {}",
+            counted(dynamic.n_steps, "step"),
+            dynamic.step,
+            counted(dynamic.output_every, "step")
         )),
         Analysis::Modes(wanted) => {
             let names: Vec<String> = wanted.bodies.iter().map(|b| modes::name(*b, wanted)).collect();
@@ -101,9 +105,9 @@ fn print_analysis(scene: &Scene) {
             ));
         }
         Analysis::Sweep(sweep) => print::line(format_args!(
-            "analysis sweep of {} over {} values",
+            "analysis sweep of {} over {}",
             sweep.key,
-            sweep.points.len()
+            counted(sweep.points.len(), "value")
         )),
     }
 }

@@ -10,7 +10,7 @@ use comm::print;
 use results::bodies::where_bodies_are;
 use results::export::{csv, integration_points, vtu};
 use results::failure::Failure;
-use results::summary::{bodies_shown_in, read_summary};
+use results::summary::{bodies_shown_in, read_summary, require_known_summary};
 use results::whole::{make_output_folder, require_free, write_new};
 
 /// File of the times of all steps.
@@ -66,8 +66,8 @@ impl Export {
     /// Says how many steps were written.
     pub fn say_written(&self, n_steps: usize) {
         print::line(format_args!(
-            "{n_steps} {} as {} in {}",
-            if n_steps == 1 { "step" } else { "steps" },
+            "{} as {} in {}",
+            print::counted(n_steps, "step"),
             self.to.extension(),
             self.folder().display()
         ));
@@ -79,11 +79,16 @@ impl Export {
 
     /// The committed steps that were asked for.
     pub fn chosen(&self, committed: &[u64]) -> Result<Vec<u64>, Failure> {
+        require_known_summary(&self.dir)?;
         let (Some(first), Some(last)) = (committed.first(), committed.last()) else {
             return Err(checkpoint::CheckpointError::NoSteps {
                 path: self.dir.clone(),
             }
             .into());
+        };
+        let range = |first: &u64, last: &u64| match first == last {
+            true => first.to_string(),
+            false => format!("from {first} to {last}"),
         };
         let wanted = self.steps.clone().unwrap_or(*first..=*last);
         let steps: Vec<u64> = committed
@@ -93,11 +98,13 @@ impl Export {
             .collect();
         if steps.is_empty() {
             return Err(anyhow!(
-                "{} has no step from {} to {}; it has {} steps from {first} to {last}",
+                "{} has no step {}; it has {}",
                 self.dir.display(),
-                wanted.start(),
-                wanted.end(),
-                committed.len()
+                range(wanted.start(), wanted.end()),
+                match committed {
+                    [only] => format!("step {only} alone"),
+                    all => format!("{} steps {}", all.len(), range(first, last)),
+                }
             )
             .into());
         }

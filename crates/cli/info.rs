@@ -218,8 +218,14 @@ fn folder(dir: &Path, depth: Inspection) -> Result<(), Failure> {
     answer::add("damaged", &damaged);
     match damaged.len() {
         0 => Ok(()),
-        n => Err(anyhow!("{n} files of {} are damaged", dir.display()).into()),
+        n => Err(damaged_files(n, dir)),
     }
+}
+
+/// That so many files of a folder are damaged.
+pub fn damaged_files(n: usize, dir: &Path) -> Failure {
+    let are = if n == 1 { "is" } else { "are" };
+    anyhow!("{} of {} {are} damaged", print::counted(n, "file"), dir.display()).into()
 }
 
 /// Prints what the folder of a bearing holds, damage too.
@@ -307,7 +313,12 @@ fn lines_of_packs(dir: &Path) -> Result<(), CheckpointError> {
         let bytes = std::fs::metadata(&path).map_or(0, |data| data.len());
         line(
             "pack",
-            &format!("{}, {} steps, {}", path.display(), steps.len(), size(bytes)),
+            &format!(
+                "{}, {}, {}",
+                path.display(),
+                print::counted(steps.len(), "step"),
+                size(bytes)
+            ),
         );
     }
     Ok(())
@@ -360,7 +371,11 @@ fn folder_state(dir: &Path) -> Result<(), Failure> {
         }
         line(
             "superseded",
-            &format!("{} steps in {}", committed_steps(&aside)?.len(), aside.display()),
+            &format!(
+                "{} in {}",
+                print::counted(committed_steps(&aside)?.len(), "step"),
+                aside.display()
+            ),
         );
     }
     Ok(())

@@ -5,6 +5,7 @@
 use std::path::Path;
 
 use anyhow::anyhow;
+use comm::print;
 use input::shell_word;
 use results::failure::{Failure, agree, of_all};
 use results::motion_fields::RestartState;
@@ -213,7 +214,10 @@ pub fn more_warn(warned: u64) -> Option<String> {
 /// How fast `steps` of `step` s went in so many seconds.
 pub fn pace(steps: u64, step: f64, seconds: f64) -> String {
     let each = 1e3 * seconds / steps.max(1) as f64;
-    format!("{steps} steps of {step} s, {each:.1} ms per step")
+    format!(
+        "{} of {step} s, {each:.1} ms per step",
+        print::counted(steps, "step")
+    )
 }
 
 /// Says what there is of a sweep that stops, with so many points solved from its point `first` to `last`, and how to

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, anyhow};
 use clap::Args;
-use comm::print;
+use comm::print::{self, counted};
 use contact::Side;
 use dynamics::StaticSolver;
 use dynamics::effects::rules::share_of;
@@ -79,8 +79,8 @@ pub fn load_matrix(command: &LoadMatrixCommand) -> Result<(), Failure> {
     make_asked_folder(&command.out)?;
     matrix.write(&command.out)?;
     print::line(format_args!(
-        "{} gauges on the {} ring, {} balls: {}",
-        matrix.gauges.len(),
+        "{} on the {} ring, {} balls: {}",
+        counted(matrix.gauges.len(), "gauge"),
         matrix.ring,
         matrix.ball_azimuths_rad.len(),
         match matrix.condition {
@@ -224,8 +224,8 @@ pub fn ball_loads(command: &BallLoadsCommand) -> Result<(), Failure> {
         old.starts_with(head.as_bytes())
     })?;
     print::line(format_args!(
-        "{} steps, {} left out with balls elsewhere; loads differ from those of the run by {} at most; {LOADS} in {}",
-        probes.n_rows() - found.left_out,
+        "{}, {} left out with balls elsewhere; loads differ from those of the run by {} at most; {LOADS} in {}",
+        counted(probes.n_rows() - found.left_out, "step"),
         found.left_out,
         deviation(found.worst / found.largest.max(f64::MIN_POSITIVE)),
         dir.display()

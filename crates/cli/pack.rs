@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use anyhow::anyhow;
 use checkpoint::{FolderLock, pack_steps, packs, unpack_steps};
 use clap::Args;
-use comm::print;
+use comm::print::{self, counted};
 use results::failure::Failure;
 use results::files::note_dead_owner;
 
@@ -37,16 +37,22 @@ pub fn pack(request: &Pack) -> Result<(), Failure> {
     note_dead_owner(&lock);
     if request.undo {
         let n = unpack_steps(&lock)?;
+        let own = match n {
+            1 => "is a file of its own",
+            _ => "are files of their own",
+        };
         print::line(format_args!(
-            "{n} steps of {} are files of their own again",
+            "{} of {} {own} again",
+            counted(n, "step"),
             dir.display()
         ));
         return Ok(());
     }
     let n = pack_steps(&lock, request.keep as usize, request.per_file as usize)?;
     print::line(format_args!(
-        "{n} steps packed, {} packs in {}; run.vtkhdf shows them, run.hdf.series only the files of one step",
-        packs(dir)?.len(),
+        "{} packed, {} in {}; run.vtkhdf shows them, run.hdf.series only the files of one step",
+        counted(n, "step"),
+        counted(packs(dir)?.len(), "pack"),
         dir.display()
     ));
     Ok(())

@@ -1,7 +1,7 @@
 //! `raceway check` of a scene with a list of bearings: sizes of each type, the shaft, and what is to be solved.
 
 use assembly::Assembly;
-use comm::print;
+use comm::print::{self, counted};
 use dynamics::Model;
 use dynamics::motion::check_supported;
 use results::answer;
@@ -133,17 +133,21 @@ fn once(lines: impl Iterator<Item = String>) -> Vec<String> {
 fn print_analysis(scene: &SeveralScene) {
     match &scene.analysis {
         Analysis::Sweep(sweep) => print::line(format_args!(
-            "analysis sweep of {} over {} values",
+            "analysis sweep of {} over {}",
             sweep.key,
-            sweep.points.len()
+            counted(sweep.points.len(), "value")
         )),
         Analysis::Dynamic(dynamic) => print::line(format_args!(
-            "analysis dynamic: {} steps of {} s, a step file of each bearing every {}",
-            dynamic.n_steps, dynamic.step, dynamic.output_every
+            "analysis dynamic: {} of {} s, a step file of each bearing every {}",
+            counted(dynamic.n_steps, "step"),
+            dynamic.step,
+            counted(dynamic.output_every, "step")
         )),
         Analysis::QuasiStatic(settings) => print::line(format_args!(
-            "analysis quasi-static: {} steps of {} s, a step file of each bearing every {}",
-            settings.n_steps, settings.step, settings.output_every
+            "analysis quasi-static: {} of {} s, a step file of each bearing every {}",
+            counted(settings.n_steps, "step"),
+            settings.step,
+            counted(settings.output_every, "step")
         )),
         Analysis::Modes(wanted) => print::line(format_args!(
             "analysis modes, the {} lowest of all bearings with their shaft",
@@ -179,7 +183,10 @@ fn print_shaft(scene: &SeveralScene, shaft: &assembly::ShaftBody) {
 
 /// What is on the shaft, in words.
 fn along(scene: &SeveralScene) -> String {
-    let count = |n: usize, what: &str| format!("{n} {what}{}", if n == 1 { "" } else { "s" });
     let [loads, discs] = [scene.shaft.loads.len(), scene.shaft.masses.len()];
-    format!("{} and {} along it", count(loads, "load"), count(discs, "disc"))
+    format!(
+        "{} and {} along it",
+        counted(loads, "load"),
+        counted(discs, "disc")
+    )
 }

@@ -2,13 +2,13 @@
 
 use std::path::Path;
 
-use anyhow::{Context, anyhow};
+use anyhow::Context;
 use results::answer;
 use results::failure::Failure;
 use results::summary::SUMMARY_FILE;
 use serde_json::Value;
 
-use crate::info::{Inspected, Inspection, inspect, line};
+use crate::info::{Inspected, Inspection, damaged_files, inspect, line};
 
 /// Prints what the folder holds. Damage found is printed, and then an error.
 pub fn info(dir: &Path, depth: Inspection) -> Result<(), Failure> {
@@ -44,7 +44,7 @@ pub fn info(dir: &Path, depth: Inspection) -> Result<(), Failure> {
     answer::add("damaged", &damaged);
     match damaged.len() {
         0 => Ok(()),
-        n => Err(anyhow!("{n} files of {} are damaged", dir.display()).into()),
+        n => Err(damaged_files(n, dir)),
     }
 }
 

@@ -264,6 +264,10 @@ def test_damaged_files_and_those_of_another_run_are_refused(runs, tmp_path):
     shutil.copy(runs.sweep().folder / "step_000000.hdf", folder / "step_000001.hdf")
     with pytest.raises(raceway.ResultsError, match="is of another run than mesh.hdf beside it"):
         raceway.open(folder).step(1)
+    own = (folder / "summary.json").read_text()
+    (folder / "summary.json").write_text(own.replace('"schema": 1', '"schema": 7', 1))
+    with pytest.raises(raceway.ResultsError, match="summary.json has schema 7; this package reads schema 1"):
+        _ = raceway.open(folder).summary
     (folder / "summary.json").write_text('{"scene": ')
     with pytest.raises(raceway.ResultsError, match="summary.json is damaged"):
         _ = raceway.open(folder).summary

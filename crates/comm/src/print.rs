@@ -3,7 +3,7 @@
 //! is remembered for the end. A command may keep standard output for one answer, say less, or keep a log of all that is
 //! said; lines that begin with `warning: `, `error: ` or `stopped: ` are always said.
 
-use std::fmt::Arguments;
+use std::fmt::{Arguments, Display};
 use std::fs::File;
 use std::io::{ErrorKind, Write};
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -226,6 +226,12 @@ pub fn harmless(text: String) -> String {
     text.split('\n').map(shown).collect::<Vec<_>>().join("\n")
 }
 
+/// A number of things by the name of one: `1 pack`, `2 packs`.
+pub fn counted<N: Display + PartialEq + From<u8>>(n: N, one: &str) -> String {
+    let end = if n == N::from(1) { "" } else { "s" };
+    format!("{n} {one}{end}")
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -246,5 +252,13 @@ mod tests {
             &long[3990..]
         );
         assert_eq!(long.lines().count(), 2);
+    }
+
+    /// Wrong: a line would speak of 1 packs, or of 0 pack.
+    #[test]
+    fn one_thing_has_no_plural() {
+        assert_eq!(counted(0_usize, "pack"), "0 packs");
+        assert_eq!(counted(1_u64, "step file"), "1 step file");
+        assert_eq!(counted(18_usize, "gauge"), "18 gauges");
     }
 }

@@ -349,6 +349,7 @@ impl DynamicsError {
             DynamicsError::Unheld { .. }
             | DynamicsError::NotInMotion { .. }
             | DynamicsError::NotInStiffness { .. }
+            | DynamicsError::NoInertia { .. }
             | DynamicsError::LooseFit { .. }
             | DynamicsError::FitLetsGo { .. }
             | DynamicsError::FitYields { .. }

@@ -390,7 +390,7 @@ fn is_own(old: &[u8]) -> bool {
 
 fn write(out: &Path, file: &HeatFile<'_>) -> Result<(), Failure> {
     let text = serde_json::to_string_pretty(file).context("cannot format heat.json")? + "\n";
-    std::fs::create_dir_all(out).with_context(|| format!("cannot create folder {}", out.display()))?;
+    whole::make_asked_folder(out)?;
     let path = out.join(HEAT_FILE);
     whole::write(&path, text.as_bytes(), is_own)?;
     print::line(format_args!("heat: {}", path.display()));

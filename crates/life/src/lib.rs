@@ -276,7 +276,7 @@ fn write(out: Option<&Path>, content: &impl Serialize, figures: &[Named]) -> Res
         .iter()
         .try_for_each(|(path, _)| require_own_picture(path))?;
     let folder = if figures.is_empty() { out } else { &pictures };
-    std::fs::create_dir_all(folder).with_context(|| format!("cannot create folder {}", folder.display()))?;
+    whole::make_asked_folder(folder)?;
     whole::write(&path, text.as_bytes(), is_own)?;
     for (path, images) in &images {
         write_picture(path, &images.svg, &images.png)?;

@@ -5,12 +5,13 @@ use std::path::Path;
 
 use anyhow::{Context, anyhow, ensure};
 use checkpoint::{all_steps, open_regular, read_any_step};
+use comm::print;
 use contact::Side;
 use dynamics::kinematics::{BothRings, Kinematics, Rolling};
 use results::ball_turns::BallTurns;
 use results::failure::Failure;
 use results::integrity::doubts;
-use results::summary::SUMMARY_FILE;
+use results::summary::{SUMMARY_FILE, other_version, require_known_summary};
 use results::table::Table;
 use scene::{Analysis, MeshFiles, Scene, geometry, rolling, speeds, time_below};
 
@@ -52,6 +53,9 @@ impl FinishedRun {
         require_finished(dir)?;
         if let Some(doubt) = doubts(dir)?.first() {
             return Err(anyhow!("{doubt}; life is counted from whole results only").into());
+        }
+        if let Some(note) = other_version(dir) {
+            print::note(format_args!("warning: {note}"));
         }
         let is_life = |argument: &&String| {
             let key = argument.split('=').next().unwrap_or_default().trim();
@@ -386,6 +390,7 @@ fn require_finished(dir: &Path) -> anyhow::Result<()> {
         .with_context(|| format!("cannot read {}", path.display()))?;
     let summary: serde_json::Value =
         serde_json::from_str(&text).with_context(|| format!("{} is damaged", path.display()))?;
+    require_known_summary(dir)?;
     let status = summary["status"].as_str().unwrap_or("unknown");
     ensure!(
         status == "finished" || summary["analysis"] != "sweep",

@@ -7,7 +7,7 @@ use checkpoint::{all_steps, open_regular, read_about, read_any_step, step_file_n
 use results::about::COMMIT;
 use results::failure::Failure;
 use results::integrity::doubts;
-use results::summary::SUMMARY_FILE;
+use results::summary::{SUMMARY_FILE, other_version, require_known_summary};
 use serde_json::Value;
 
 /// The run.
@@ -39,6 +39,7 @@ pub fn read(dir: &Path) -> Result<ReportedRun, Failure> {
     let file = open_regular(&path)?;
     let text = std::io::read_to_string(file).with_context(|| format!("cannot read {}", path.display()))?;
     let summary = serde_json::from_str(&text).with_context(|| format!("{} is damaged", path.display()))?;
+    require_known_summary(dir)?;
     let (scene, commit) = match all_steps(dir)?.last() {
         Some(&step) => {
             let record = read_any_step(dir, step)?;
@@ -51,7 +52,7 @@ pub fn read(dir: &Path) -> Result<ReportedRun, Failure> {
     };
     Ok(ReportedRun {
         summary,
-        doubts: doubts(dir)?,
+        doubts: doubts(dir)?.into_iter().chain(other_version(dir)).collect(),
         scene,
         commit,
         ended: ended(&path),

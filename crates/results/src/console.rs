@@ -31,7 +31,7 @@ pub fn print_snapshot(snapshot: &Snapshot) {
 /// Prints a line per point of a sweep.
 pub fn print_sweep(column: &str, solutions: &[(f64, &StaticSolution)]) {
     print::line(format_args!(
-        "{column:>28}    x um     z um  tilt_y urad   force N min..max   angle deg min..max"
+        "{column:>28}    x um     y um     z um  tilt_x urad  tilt_y urad   force N min..max   angle deg min..max"
     ));
     for (value, s) in solutions {
         let range = |f: &dyn Fn(&dynamics::balls::BallResult) -> f64| {
@@ -44,13 +44,15 @@ pub fn print_sweep(column: &str, solutions: &[(f64, &StaticSolution)]) {
             range(&|b| b.inner.force_n),
             range(&|b| b.inner.contact_angle_rad.to_degrees()),
         );
-        let q = s.displacements.shaft;
+        let [x, y, z, tilt_x, tilt_y] = s.displacements.shaft.map(|q| 1e6 * q);
         print::line(format_args!(
-            "{:>28} {:>7} {:>8} {:>12} {:9.2} {:8.2} {:10.3} {:8.3}",
+            "{:>28} {:>7} {:>8} {:>8} {:>12} {:>12} {:9.2} {:8.2} {:10.3} {:8.3}",
             digits(*value),
-            fixed::<3>(1e6 * q[0]),
-            fixed::<3>(1e6 * q[2]),
-            fixed::<2>(1e6 * q[4]),
+            fixed::<3>(x),
+            fixed::<3>(y),
+            fixed::<3>(z),
+            fixed::<2>(tilt_x),
+            fixed::<2>(tilt_y),
             force.0,
             force.1,
             angle.0,

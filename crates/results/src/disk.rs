@@ -176,9 +176,9 @@ impl Forecast {
             false => String::new(),
         };
         print::line(format_args!(
-            "output   about {} per step file, {} step files{states}, {} in all{free}",
+            "output   about {} per step file, {}{states}, {} in all{free}",
             size(self.step),
-            self.n_files,
+            print::counted(self.n_files, "step file"),
             size(self.total)
         ));
     }
@@ -193,9 +193,9 @@ impl Forecast {
             return Ok(());
         }
         let what = format!(
-            "the results need about {} ({} step files of {}), the disk of {} has {} free",
+            "the results need about {} ({} of {}), the disk of {} has {} free",
             size(self.total),
-            self.n_files,
+            print::counted(self.n_files, "step file"),
             size(self.step),
             dir.display(),
             size(free)

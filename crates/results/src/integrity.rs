@@ -8,11 +8,12 @@ use checkpoint::{
 };
 use comm::print;
 
-use crate::summary::{SUMMARY_FILE, read_summary};
+use crate::summary::{SUMMARY_FILE, other_version, read_summary, require_known_summary};
 
 /// What is wrong with tables and summary in `dir`, a sentence each; nothing if they are as written, or if no
-/// step tells of them.
+/// step tells of them. Fails if the summary is none that this program knows.
 pub fn doubts(dir: &Path) -> anyhow::Result<Vec<String>> {
+    require_known_summary(dir)?;
     let run = run_of(dir)?;
     let mut doubts = doubt_of_summary(dir, run.as_deref());
     for &step in committed_steps(dir)?.iter().rev() {
@@ -42,9 +43,9 @@ fn doubt_of_summary(dir: &Path, run: Option<&str>) -> Vec<String> {
     other.map(text).into_iter().collect()
 }
 
-/// Prints what is wrong with the tables in `dir`.
+/// Prints what is wrong with the tables in `dir`, and whether another version of the program wrote them.
 pub fn warn_of_doubts(dir: &Path) -> anyhow::Result<()> {
-    for doubt in doubts(dir)? {
+    for doubt in doubts(dir)?.into_iter().chain(other_version(dir)) {
         print::note(format_args!("warning: {doubt}"));
     }
     Ok(())

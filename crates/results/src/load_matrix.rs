@@ -15,6 +15,7 @@
 use std::path::Path;
 
 use anyhow::{Context, anyhow, ensure};
+use comm::print::counted;
 use contact::Side;
 use dense::DenseCholesky;
 use dynamics::{Model, StaticSolution, StaticSolver};
@@ -149,8 +150,10 @@ impl LoadMatrix {
         let (n, m) = (self.ball_azimuths_rad.len(), self.gauges.len());
         ensure!(
             m >= n,
-            "{m} gauges on the {} ring do not tell the loads of {n} balls apart; expected one gauge per ball at least",
-            self.ring
+            "{} on the {} ring {} not tell the loads of {n} balls apart; expected one gauge per ball at least",
+            counted(m, "gauge"),
+            self.ring,
+            if m == 1 { "does" } else { "do" }
         );
         let condition = self.condition.unwrap_or(f64::INFINITY);
         ensure!(

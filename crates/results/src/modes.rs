@@ -27,8 +27,8 @@ use super::ring_stress::{RingStress, ShownRing, StressBasis};
 use super::shown::Turn;
 use super::snapshot::Snapshot;
 use super::summary::{
-    ShaftSummary, TOTAL, mode_name, peak_memory, print_peak, print_seconds, print_warnings, sides,
-    write_summary,
+    SUMMARY_SCHEMA, ShaftSummary, TOTAL, mode_name, peak_memory, print_peak, print_seconds, print_warnings,
+    sides, write_summary,
 };
 use super::tables;
 use crate::failure::Failure;
@@ -288,7 +288,7 @@ impl ModesSummary {
         sets.iter().for_each(|(_, set)| laps.merge(&set.laps));
         laps.add(TOTAL, start.elapsed().as_secs_f64());
         ModesSummary {
-            schema: 1,
+            schema: SUMMARY_SCHEMA,
             scene: scene.path.display().to_string(),
             run,
             title: scene.title.clone(),

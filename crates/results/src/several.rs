@@ -19,7 +19,7 @@ use timer::Laps;
 use crate::cut::TableCut;
 use crate::modes::FrequenciesSummary;
 use crate::seat::{beside_shaft_at_rest, beside_shaft_in_motion};
-use crate::summary::{peak_memory, print_peak, print_seconds, print_warnings, write_summary};
+use crate::summary::{SUMMARY_SCHEMA, peak_memory, print_peak, print_seconds, print_warnings, write_summary};
 use crate::tables::{append, ball_cells, ball_columns, create, head, number, place_of};
 use crate::tilt::AcrossShaft;
 
@@ -441,7 +441,7 @@ impl SeveralSummary {
             .iter()
             .map(|lap| (lap.name.to_string(), lap.seconds));
         SeveralSummary {
-            schema: 1,
+            schema: SUMMARY_SCHEMA,
             scene: scene.path.display().to_string(),
             title: scene.title.clone(),
             version: env!("CARGO_PKG_VERSION"),

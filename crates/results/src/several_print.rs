@@ -14,8 +14,9 @@ pub fn print_solution(assembly: &Assembly, last: &ListState) {
          largest ball  loaded"
     ));
     print::line(format_args!(
-        "                     mm      um       um       um     urad     urad         N         N         N  \
-                    N   balls"
+        "                     mm      um       um       um     urad     urad         N         N         N\
+         {:>14}   balls",
+        "N"
     ));
     for (mounted, state) in assembly.bearings.iter().zip(&last.bearings) {
         let [x, y, z, a, b] = state.displacement.map(|q| 1e6 * q);

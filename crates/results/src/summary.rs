@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use anyhow::Context;
+use anyhow::{Context, bail};
 use checkpoint::open_regular;
 use comm::{Communicator, print};
 use contact::Side;
@@ -53,6 +53,8 @@ const ALWAYS: [&str; 11] = [
 const SOMETIMES: [&str; 3] = [NEAR_FIELD, REDUCTION, GATHER];
 /// Name of the file in the result folder.
 pub const SUMMARY_FILE: &str = "summary.json";
+/// Schema of the file.
+pub const SUMMARY_SCHEMA: u32 = 1;
 
 /// The whole file.
 #[derive(Debug, Serialize)]
@@ -208,7 +210,7 @@ impl Summary {
         warnings.extend(film.iter().filter_map(|(side, film)| film.warning(side)));
         warnings.dedup();
         Summary {
-            schema: 1,
+            schema: SUMMARY_SCHEMA,
             scene: scene.path.display().to_string(),
             run: costs.run.clone(),
             title: scene.title.clone(),
@@ -361,6 +363,41 @@ pub fn bodies_shown_in(summary: &serde_json::Value) -> BodiesElsewhere {
 pub fn read_summary(dir: &Path) -> Option<serde_json::Value> {
     let file = open_regular(&dir.join(SUMMARY_FILE)).ok()?;
     serde_json::from_reader(std::io::BufReader::new(file)).ok()
+}
+
+/// Fails if the summary in `dir` is none that this program knows: of another schema, or of another program. One that
+/// is not there, or damaged, is the business of who needs it.
+pub fn require_known_summary(dir: &Path) -> anyhow::Result<()> {
+    let Some(summary) = read_summary(dir) else {
+        return Ok(());
+    };
+    let found = &summary["schema"];
+    if *found == SUMMARY_SCHEMA {
+        return Ok(());
+    }
+    let schema = match found {
+        serde_json::Value::Null => "no schema".to_string(),
+        found => format!("schema {found}"),
+    };
+    let by = summary["version"].as_str().map_or(String::new(), |version| {
+        format!(", of version {version:?} of its program")
+    });
+    bail!(
+        "{} has {schema}{by}; this program, version {}, reads schema {SUMMARY_SCHEMA}: read it with the program that \
+         wrote it, or run the scene again",
+        dir.join(SUMMARY_FILE).display(),
+        env!("CARGO_PKG_VERSION")
+    )
+}
+
+/// That the summary in `dir` is of another version of the program, if so.
+pub fn other_version(dir: &Path) -> Option<String> {
+    let (summary, now) = (read_summary(dir)?, env!("CARGO_PKG_VERSION"));
+    let then = summary["version"].as_str().filter(|then| *then != now)?;
+    Some(format!(
+        "{} was written by version {then} of the program, this is {now}: what has changed stands in CHANGELOG.md",
+        dir.join(SUMMARY_FILE).display()
+    ))
 }
 
 /// A value per side, by name.

@@ -3,7 +3,7 @@
 //! The content goes to a new hidden file in the same folder, is brought to the disk, and renamed.
 
 use std::fs::File;
-use std::io::{BufWriter, Write};
+use std::io::{BufWriter, ErrorKind, Write};
 use std::path::Path;
 
 use anyhow::{Context, anyhow};
@@ -86,14 +86,14 @@ pub fn make_folder(path: &Path) -> anyhow::Result<()> {
                 "{} is a link or a file; expected a folder or nothing there, remove it or choose another --out",
                 path.display()
             )),
-            Err(_) => Err(error).with_context(|| format!("cannot create folder {}", path.display())),
+            Err(_) => Err(cannot("create folder", path, error)),
         },
     }
 }
 
 /// Makes a folder that was asked for, which may be a link, with those above it.
 pub fn make_asked_folder(path: &Path) -> anyhow::Result<()> {
-    std::fs::create_dir_all(path).with_context(|| format!("cannot create folder {}", path.display()))
+    std::fs::create_dir_all(path).map_err(|error| cannot("create folder", path, error))
 }
 
 /// Makes the folder that a command writes to: the one asked for, which may be a link, or `path` in the results.
@@ -121,7 +121,19 @@ fn write_by(path: &Path, fill: impl FnOnce(&mut dyn Write) -> std::io::Result<()
         // The first error is the one to report.
         let _ = std::fs::remove_file(&hidden);
     }
-    written.with_context(|| format!("cannot write {}", path.display()))
+    written.map_err(|error| cannot("write", path, error))
+}
+
+/// Why a file or folder cannot be made. Where it may not be made at all another place is the way out.
+fn cannot(action: &str, path: &Path, error: std::io::Error) -> anyhow::Error {
+    let text = match error.kind() {
+        ErrorKind::PermissionDenied | ErrorKind::ReadOnlyFilesystem => format!(
+            "cannot {action} {}: {error}; give another --out where the command has one",
+            path.display()
+        ),
+        _ => format!("cannot {action} {}", path.display()),
+    };
+    anyhow::Error::new(error).context(text)
 }
 
 fn write_hidden(
@@ -137,6 +149,7 @@ fn write_hidden(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::failure::one_line;
 
     /// Wrong: a command would replace a file of the user's, write through a link, or leave half a file.
     #[test]
@@ -168,5 +181,21 @@ mod tests {
             2,
             "no hidden file stays"
         );
+    }
+
+    /// Wrong: results of somebody else, or on a disk that is read alone, would leave a reader without a word on where
+    /// figures and pages may go.
+    #[test]
+    fn a_place_that_may_not_be_written_to_is_said_with_the_way_out() {
+        for kind in [ErrorKind::PermissionDenied, ErrorKind::ReadOnlyFilesystem] {
+            let found = one_line(&cannot("write", Path::new("out/report.html"), kind.into()));
+            let expected = format!(
+                "cannot write out/report.html: {}; give another --out where the command has one",
+                std::io::Error::from(kind)
+            );
+            assert_eq!(found, expected);
+        }
+        let full = cannot("write", Path::new("a"), ErrorKind::StorageFull.into());
+        assert!(!one_line(&full).contains("--out"), "{full:#}");
     }
 }

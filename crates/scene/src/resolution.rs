@@ -351,7 +351,7 @@ impl WornTrack<'_> {
                      less",
                     self.passes,
                     self.body,
-                    time(STEPS_PER_PERIOD * needed),
+                    time_about(STEPS_PER_PERIOD * needed),
                     STEPS_PER_PERIOD * needed / steps.step,
                     time(steps.step),
                     steps.table,
@@ -376,7 +376,7 @@ impl WornTrack<'_> {
                 self.passes,
                 spall + 1,
                 self.body,
-                time(STEPS_PER_EDGE * needed),
+                time_about(STEPS_PER_EDGE * needed),
                 1e3 * self.half_width,
                 time(steps.step),
                 steps.table,
@@ -406,6 +406,12 @@ fn warn_of_table(times: &[f64], steps: &TimeSteps, warn: &mut dyn FnMut(String))
 pub fn time_below(seconds: f64) -> String {
     let unit = 10f64.powi(seconds.log10().floor() as i32 - 1);
     time((seconds / unit * (1.0 + 1e-9)).floor() * unit)
+}
+
+/// A time that was computed, with as many digits as a reader needs: five.
+fn time_about(seconds: f64) -> String {
+    let unit = 10f64.powi(seconds.log10().floor() as i32 - 4);
+    time((seconds / unit).round() * unit)
 }
 
 fn time(seconds: f64) -> String {

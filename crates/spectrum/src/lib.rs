@@ -75,7 +75,9 @@ impl FromStr for Band {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Band, String> {
-        let expected = || format!("expected two frequencies in Hz such as 2000..8000, found {text:?}");
+        let expected = || {
+            format!("expected two frequencies in Hz, the lower one first, such as 2000..8000, found {text:?}")
+        };
         let (low, high) = text.split_once("..").ok_or_else(expected)?;
         let number = |text: &str| text.trim().parse::<f64>().map_err(|_| expected());
         let band = [number(low)?, number(high)?];

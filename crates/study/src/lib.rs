@@ -34,6 +34,7 @@ use anyhow::{Context, anyhow};
 use clap::Args;
 use comm::print;
 use results::failure::Failure;
+use results::whole::make_asked_folder;
 
 pub use self::advise::{Question, advise};
 pub use self::format::{Cell, CostKind, Meshes, Take};
@@ -121,7 +122,7 @@ fn run_missing(
     if jobs == 0 {
         return Err(Failure::User(anyhow!("--jobs is 0; expected at least 1")));
     }
-    std::fs::create_dir_all(out).with_context(|| format!("cannot create {}", out.display()))?;
+    make_asked_folder(out)?;
     let mut missing: Vec<Point> = Vec::new();
     for point in wanted {
         match record::find(plan, point, out)? {

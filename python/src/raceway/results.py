@@ -33,6 +33,9 @@ if TYPE_CHECKING:
 #: Files of which at least one is in a result folder, besides tables and steps.
 DOCUMENTS = ("summary.json", "stiffness.json", "life.json", "heat.json", "load_matrix.json")
 
+#: Schema of `summary.json`.
+SUMMARY_SCHEMA = 1
+
 #: The scene of a list of bearings, beside their folders.
 LIST_SCENE = "scene.toml"
 
@@ -62,7 +65,12 @@ class Results:
     @cached_property
     def summary(self) -> dict[str, Any]:
         """Key numbers of the run: `summary.json`."""
-        return self._document("summary.json", "a run that has ended has it")
+        found = self._document("summary.json", "a run that has ended has it")
+        if found.get("schema") != SUMMARY_SCHEMA:
+            schema = f"schema {found['schema']!r}" if "schema" in found else "no schema"
+            expected = f"this package reads schema {SUMMARY_SCHEMA}: read it with that of the program that wrote it"
+            raise ResultsError(f"{self.folder / 'summary.json'} has {schema}; {expected}")
+        return found
 
     @cached_property
     def stiffness(self) -> dict[str, Any]:

@@ -74,9 +74,11 @@ impl Messages<'_> {
         }
         let problem = |finding: &Finding| {
             let located = locate::locate(text, finding.span.clone(), &finding.message);
-            match located.is_of_whole_file || !self.overrides.is_empty() {
-                true => located.message,
-                false => with_place(&located.message, &self.whole.place(located.line)),
+            let argument = finding.span.as_ref().and_then(|span| self.giver(text, span));
+            match argument {
+                _ if located.is_of_whole_file => located.message,
+                Some(argument) => format!("{} (--set {argument:?})", located.message),
+                None => with_place(&located.message, &self.whole.place_in(text, located.line)),
             }
         };
         SceneError::Invalid {

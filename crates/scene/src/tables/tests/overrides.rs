@@ -138,6 +138,25 @@ fn bad_overrides_are_refused_with_their_text() {
     }
 }
 
+/// Wrong: with a value of the command line, several mistakes of the file would have no lines, and one of the command
+/// line would be looked for in the file.
+#[test]
+fn several_problems_have_their_lines_beside_overrides() {
+    let text = EXAMPLE
+        .replacen("balls = ", "bals = ", 1)
+        .replacen("mesh_unit = ", "mesh_unti = ", 1);
+    let line_with = |key: &str| 1 + text.lines().position(|line| line.starts_with(key)).unwrap();
+    let message = message_of(&text, &["effects.wind.value=3 N", "title=other"]);
+    for expected in [
+        "unknown key \"bals\" in [bearing]; did you mean \"balls\"? valid keys".to_string(),
+        format!("(line {})\n", line_with("bals = ")),
+        format!("(line {})\n", line_with("mesh_unti = ")),
+        "(--set \"effects.wind.value=3 N\")".to_string(),
+    ] {
+        assert!(message.contains(&expected), "{expected}: {message}");
+    }
+}
+
 /// If this failed, a study could not leave an effect out, or would leave out something else.
 #[test]
 fn none_takes_a_table_out_and_is_a_word_elsewhere() {
