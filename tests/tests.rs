@@ -12,6 +12,7 @@ mod elastic_shaft;
 mod elastic_surfaces;
 mod examples;
 mod export;
+mod film_lift;
 mod first_hour;
 mod fits;
 mod free_analyses;

@@ -12,7 +12,9 @@ use std::sync::Arc;
 use body::{BesideRing, BodyLoad};
 use contact::film::FilmContact;
 use contact::hertz::Elastic;
-use contact::{BearingGeometry, HertzContact, LeastSize, Meridian, NodalWeights, Side, SphereCompliance};
+use contact::{
+    BearingGeometry, BySide, HertzContact, LeastSize, Meridian, NodalWeights, Side, SphereCompliance,
+};
 use fem::Material;
 use input::Schedule;
 use ring::rigid::RigidInertia;
@@ -125,6 +127,8 @@ pub struct Model {
     pub sphere: SphereCompliance,
     /// Real surfaces; the default costs nothing.
     pub surfaces: Surfaces,
+    /// By how much films lift balls off the grooves, inner first, m; 0 where films take no room.
+    pub film_lift: BySide<f64>,
     /// What the scene tells of shoulders, for warnings.
     pub shoulders: Shoulders,
     /// Flexible rings, inner first; None is a rigid ring and costs nothing.
@@ -280,7 +284,7 @@ impl Model {
     /// Distance of the centres of groove and a touching ball of a bearing that is mounted so, m.
     pub fn touching_distance(&self, mounting: &Mounting, side: Side, ball: usize) -> f64 {
         let distance = self.geometry.touching_distance(side) + mounting.touching_growth(side);
-        distance - self.surfaces.larger_radius(ball)
+        distance - self.surfaces.larger_radius(ball) - self.film_lift[side.index()]
     }
 
     /// Imposed displacement of a shaft dof (0..5) at a time in s, m or rad; None: it is free.

@@ -3,14 +3,14 @@
 //! The surface of a ball rolls with the speed r omega_R, omega_R the ball's rotation about its own axis relative to the
 //! cage: that of kinematic balls, at the free contact angle. With the slip ratio s that is 1 - s of the raceway's, and
 //! the film takes the mean of both. Free balls roll as they turn and slip.
-//! Thickness: [`contact::film`]. Films change no gap and no normal force.
+//! Thickness: [`contact::film`]. Films change no normal force, and no gap unless a scene gives `lubricant.lift_load`.
 
 use contact::film::{Film, FilmContact, Lubricant};
 use contact::{BySide, Side};
 use dynamics::Model;
 use dynamics::balls::BallResult;
 use dynamics::model::elastic;
-use scene::{Materials, Roughness, Scene};
+use scene::{Materials, Roughness, Scene, mean_over_ball};
 use serde::Serialize;
 
 /// What films of a bearing take besides its state.
@@ -108,11 +108,6 @@ impl FilmLaw {
             lambda: self.lambda(side, film),
         })
     }
-}
-
-/// Mean speed of both surfaces of a contact over that of the ball's, which lacks this share of the raceway's.
-fn mean_over_ball(slip: f64) -> f64 {
-    (1.0 - 0.5 * slip) / (1.0 - slip)
 }
 
 impl FilmSummary {

@@ -14,6 +14,7 @@ use fem::Material;
 use mesh::{Coverage, Cylinder, Mesh, Torus};
 
 use crate::error::BuildError;
+use crate::films::film_lift;
 use crate::half_widths::half_widths;
 use crate::housing::seat_tie;
 use crate::marks::require_raceway_under_marks;
@@ -100,6 +101,7 @@ pub fn model_with_rings(scene: &Scene, rings: [Option<Arc<RingModel>>; 2]) -> Re
         hertz,
         sphere,
         surfaces: Surfaces::default(),
+        film_lift: [0.0; 2],
         shoulders,
         rings,
         other_seats: [None, None],
@@ -125,9 +127,16 @@ pub fn model_with_rings(scene: &Scene, rings: [Option<Arc<RingModel>>; 2]) -> Re
             max_rounds: scene.solver.max_iterations,
         },
     };
-    let half_widths = half_widths(scene, &mut model);
-    model.surfaces = surfaces(scene, &model.geometry, &model.hertz, &model.rings, half_widths)?;
+    add_surfaces(scene, &mut model)?;
     Ok(model)
+}
+
+/// Real surfaces, and films between them.
+fn add_surfaces(scene: &Scene, model: &mut Model) -> Result<(), BuildError> {
+    let half_widths = half_widths(scene, model);
+    model.surfaces = surfaces(scene, &model.geometry, &model.hertz, &model.rings, half_widths)?;
+    model.film_lift = film_lift(scene, model, rolling(scene));
+    Ok(())
 }
 
 /// Laws of the contacts of balls and rings of these elasticities.

@@ -77,6 +77,7 @@ impl Case {
             hertz: Side::BOTH.map(|side| HertzContact::new(&geometry, side, elastic, elastic)),
             sphere: SphereCompliance::default(),
             surfaces: Default::default(),
+            film_lift: [0.0; 2],
             shoulders: Default::default(),
             geometry,
             rings: [None, None],

@@ -1,4 +1,5 @@
-//! What lubricates the contacts. It changes nothing that a run computes but traction with law = "limiting_shear".
+//! What lubricates the contacts. It changes what a run computes by traction with law = "limiting_shear" and by the room
+//! that films take with `lift_load`, else nothing.
 //!
 //! ```toml
 #![doc = include_str!("example_lubricant.toml")]
@@ -7,7 +8,8 @@
 use contact::BySide;
 use contact::film::Lubricant;
 use input::{
-    DENSITY, DYNAMIC_VISCOSITY, LENGTH, PRESSURE_COEFFICIENT, Problems, Quantity, Temperature, VISCOSITY,
+    DENSITY, DYNAMIC_VISCOSITY, FORCE, LENGTH, PRESSURE_COEFFICIENT, Problems, Quantity, Temperature,
+    VISCOSITY,
 };
 use serde::Deserialize;
 
@@ -23,6 +25,7 @@ pub struct RawLubricant {
     temperature: Option<Temperature>,
     density: Option<Quantity<DENSITY>>,
     pressure_coefficient: Quantity<PRESSURE_COEFFICIENT>,
+    lift_load: Option<Quantity<FORCE>>,
     roughness: Option<RawRoughness>,
 }
 
@@ -40,6 +43,8 @@ struct RawRoughness {
 pub struct Lubrication {
     /// The oil at the temperature of the contacts.
     pub lubricant: Lubricant,
+    /// Load of a contact, N, whose film lifts all balls off their grooves; None: films take no room.
+    pub lift_load: Option<f64>,
     /// Roughness of the surfaces; None: there is no lambda.
     pub roughness: Option<Roughness>,
 }
@@ -53,14 +58,23 @@ pub struct Roughness {
     pub balls: f64,
 }
 
+/// How the rings of a bearing turn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Turns {
+    /// At constant speeds.
+    Steadily,
+    /// At speeds that change.
+    Changing,
+}
+
 /// No oil has a larger pressure coefficient, 1/Pa.
 const MOST_COEFFICIENT: f64 = 1e-7;
 /// No surface that rolls is rougher, m.
 const MOST_ROUGHNESS: f64 = 1e-5;
 
 impl RawLubricant {
-    /// Checks values and what belongs together; `turns`: whether a speed rolls the contacts.
-    pub fn check(&self, turns: bool, problems: &mut Problems) -> Option<Lubrication> {
+    /// Checks values and what belongs together; `turns`: how the rings turn, None where no contact rolls.
+    pub fn check(&self, turns: Option<Turns>, problems: &mut Problems) -> Option<Lubrication> {
         let xi = &self.pressure_coefficient;
         problems.require(
             xi.si() > 0.0 && xi.si() <= MOST_COEFFICIENT,
@@ -68,7 +82,8 @@ impl RawLubricant {
             xi,
             "expected above 0 to 100 1/GPa, mineral oils have 15 to 30 1/GPa",
         );
-        if !turns {
+        self.check_lift(turns, problems);
+        if turns.is_none() {
             problems.add(
                 "[lubricant] makes no film in a bearing that stands still; add [speed] with inner = \"1800 rpm\" to a \
                  scene in which it turns, or remove [lubricant]",
@@ -80,8 +95,20 @@ impl RawLubricant {
                 viscosity,
                 pressure_coefficient: xi.si(),
             },
+            lift_load: self.lift_load.as_ref().map(Quantity::si),
             roughness: self.roughness.as_ref().map(|roughness| roughness.check(problems)),
         })
+    }
+
+    fn check_lift(&self, turns: Option<Turns>, problems: &mut Problems) {
+        let Some(load) = &self.lift_load else { return };
+        problems.require_positive(load, "lubricant.lift_load", "a load");
+        if turns == Some(Turns::Changing) {
+            problems.add(
+                "lubricant.lift_load gives films of one thickness, but [speed] changes; give a constant speed, or \
+                 remove it: films take no room then",
+            );
+        }
     }
 
     /// Dynamic viscosity, Pa s.

@@ -355,7 +355,7 @@ impl TextSource<'_> {
         let output = raw.output.check(raw.output_context(flexible), &mut problems);
         let stress = raw.stress_of(contact.mode, &mut problems);
         let probes = raw.probes_of(bearing.as_ref(), &mut problems);
-        let lubricant = raw.lubricant(raw.speed.is_some() && raw.modes.is_none(), &mut problems);
+        let lubricant = raw.lubricant(speed.as_ref(), &mut problems);
         let life = raw.life(&mut problems);
         let heat = raw.heat(&mut problems);
         let modes = ModesContext::new(flexible, contact.mode, solver.backend);

@@ -1,6 +1,7 @@
 //! Tables that a scene may have: a free cage, a body round the outer ring; and those that change nothing that a run
 //! computes, for lubrication, life and heat.
 
+use contact::Side;
 use dynamics::interactions::cage::Cage;
 use dynamics::kinematics::{BallSpeeds, RingSpeeds};
 use input::Problems;
@@ -10,7 +11,7 @@ use super::bearing::Bearing;
 use super::body::{BodyContext, SceneBody, check_bodies};
 use super::heat::Heat;
 use super::life::Life;
-use super::lubricant::Lubrication;
+use super::lubricant::{Lubrication, Turns};
 use super::materials::Materials;
 use super::probes::{Probes, ProbesContext};
 use super::solver::BackendChoice;
@@ -73,8 +74,22 @@ impl RawScene {
         self.probes.check(context, problems)
     }
 
-    /// What lubricates the contacts; `turns`: whether a speed rolls them.
-    pub(super) fn lubricant(&self, turns: bool, problems: &mut Problems) -> Option<Lubrication> {
+    /// What lubricates the contacts that roll at these speeds.
+    pub(super) fn lubricant(
+        &self,
+        speeds: Option<&RingSpeeds>,
+        problems: &mut Problems,
+    ) -> Option<Lubrication> {
+        let changes =
+            || speeds.is_some_and(|speeds| Side::BOTH.iter().any(|side| speeds.of(*side).changes()));
+        let rolls = self.speed.is_some() && self.modes.is_none();
+        let turns = rolls.then(|| {
+            if changes() {
+                Turns::Changing
+            } else {
+                Turns::Steadily
+            }
+        });
         self.lubricant.as_ref()?.check(turns, problems)
     }
 

@@ -64,6 +64,14 @@ fn what_makes_no_sense_of_a_lubricant_is_refused() {
             "lubricant.pressure_coefficient is 22 1/MPa; expected above 0 to 100 1/GPa, mineral oils have 15 to 30",
         ),
         (
+            format!("{XI}\nviscosity = \"40 mPa s\"\nlift_load = \"-3 N\""),
+            "lubricant.lift_load is -3 N; a load must be positive",
+        ),
+        (
+            format!("{XI}\nviscosity = \"40 mPa s\"\nlift_load = \"300 N\""),
+            "lubricant.lift_load gives films of one thickness, but [speed] changes; give a constant speed, or remove",
+        ),
+        (
             format!(
                 "{XI}\nviscosity = \"40 mPa s\"\n\
                  roughness = {{ inner = \"0.1 mm\", outer = \"0.1 um\", balls = \"0.1 um\" }}"
