@@ -13,7 +13,7 @@ use timer::Laps;
 use crate::body_rounds::{LOOSEST, change, has_stalled, largest, tolerance_after};
 use crate::error::AssemblyError;
 use crate::housing::{HousedTogether, SharedBody, housed_together, shared_bodies};
-use crate::loads::{ShaftLoads, first_dofs, lever_stiffness};
+use crate::loads::{ShaftLoads, first_dofs};
 use crate::mixing::Mixing;
 use crate::newton::{Mount, Problem, Scales, SettledShaft, settle};
 use crate::place::{MountedBearing, Orientation};
@@ -90,37 +90,43 @@ impl Assembly {
 
     /// The places of the bearings on the shaft.
     pub fn mounts(&self) -> Vec<Mount> {
-        let mount = |bearing: &MountedBearing| Mount {
+        let mount = |(bearing, station): (&MountedBearing, Station)| Mount {
             name: bearing.name.clone(),
             place: bearing.place,
-            station: self.shaft.station(bearing.place.position),
+            station,
         };
-        self.bearings.iter().map(mount).collect()
+        self.bearings.iter().zip(self.stations()).map(mount).collect()
+    }
+
+    /// The places of the bearings on the straight shaft.
+    fn stations(&self) -> impl Iterator<Item = Station> {
+        self.bearings
+            .iter()
+            .map(|bearing| self.shaft.station(bearing.place.position))
     }
 
     /// The places of the bearings, with their motions about an equilibrium.
     pub fn stations_at(&self, solution: &AssemblySolution) -> Vec<Station> {
-        let at = |bearing: &MountedBearing| {
-            let station = self.shaft.station(bearing.place.position);
-            station.at(&solution.shaft.displacements)
-        };
-        self.bearings.iter().map(at).collect()
+        self.stations()
+            .map(|station| station.at(&solution.shaft.displacements))
+            .collect()
     }
 
     /// Loads of the shaft on the bearings in an equilibrium, in its frame, N and N m.
     pub fn loads_on_bearings(&self, solution: &AssemblySolution) -> Vec<[f64; N_SHAFT]> {
-        let on = |i: usize| self.force_on_shaft(i, solution).map(|force| -force);
-        (0..self.bearings.len()).map(on).collect()
+        let pairs = self.bearings.iter().zip(&solution.bearings);
+        pairs
+            .map(|(bearing, found)| bearing.place.orientation.turned(found.shaft_reaction))
+            .collect()
     }
 
     /// What the levers of all forces on a rigid shaft add to its stiffness about its origin, in an equilibrium; nothing
     /// of a linear shaft.
     pub fn of_levers(&self, solution: &AssemblySolution) -> ShaftMatrix {
-        let places = self.mounts().into_iter().map(|mount| mount.station);
-        let on_bearings = places.zip(self.loads_on_bearings(solution));
+        let on_bearings = self.stations().zip(self.loads_on_bearings(solution));
         let levers = self.load.beyond_straight(&self.shaft, on_bearings);
         levers.map_or([[0.0; N_SHAFT]; N_SHAFT], |levers| {
-            lever_stiffness(&levers, first_dofs(&solution.shaft.displacements))
+            levers.stiffness(first_dofs(&solution.shaft.displacements))
         })
     }
 

@@ -7,7 +7,7 @@
 //! moments stay. A beam is linear, and so is a shaft under an elastic body that carries several bearings: no levers.
 
 use dynamics::bodies::TiltedLoads;
-use dynamics::stiffness::{N_SHAFT, ShaftMatrix};
+use dynamics::stiffness::N_SHAFT;
 use dynamics::system::Interval;
 
 use crate::shaft::{ShaftBody, Station};
@@ -38,7 +38,7 @@ impl ShaftLoads {
     /// Adds force x, y, z, N, and moment about x and y, N m, at a place.
     pub fn add(&mut self, station: &Station, load: [f64; N_SHAFT]) {
         station.add_load(load, &mut self.on_dofs);
-        add_lever(&mut self.lever, station, load, 1.0);
+        self.add_arm([0, 1, 2].map(|i| station.lever * load[i]));
     }
 
     /// Makes moments that are there already those of levers: forces times their distances from their place, N m.
@@ -58,8 +58,10 @@ impl ShaftLoads {
         }
         let [.., about_x, about_y] = first_dofs(&self.on_dofs);
         let moment = [about_x + self.lever[1], about_y - self.lever[0]];
-        let mut lever = self.lever;
-        on_bearings.for_each(|(station, load)| add_lever(&mut lever, &station, load, -1.0));
+        let taken_off = |lever: [f64; 3], (station, load): (Station, [f64; N_SHAFT])| {
+            [0, 1, 2].map(|i| lever[i] - station.lever * load[i])
+        };
+        let lever = on_bearings.fold(self.lever, taken_off);
         Some(TiltedLoads { lever, moment })
     }
 
@@ -70,31 +72,7 @@ impl ShaftLoads {
     }
 }
 
-/// Growth of the load by which a rigid shaft that tilts so holds these loads, with its tilts.
-pub fn lever_stiffness(loads: &TiltedLoads, [.., tilt_x, tilt_y]: [f64; N_SHAFT]) -> ShaftMatrix {
-    let mut matrix = [[0.0; N_SHAFT]; N_SHAFT];
-    for (row, [x, y]) in matrix[3..].iter_mut().zip(loads.slopes([tilt_x, tilt_y])) {
-        (row[3], row[4]) = (0.0 - x, 0.0 - y);
-    }
-    matrix
-}
-
-/// Forces on places of a rigid shaft times their distances from its origin, of bearings that it loads so.
-pub fn levers(on_bearings: impl Iterator<Item = (Station, [f64; N_SHAFT])>) -> TiltedLoads {
-    let mut lever = [0.0; 3];
-    on_bearings.for_each(|(station, load)| add_lever(&mut lever, &station, load, -1.0));
-    TiltedLoads {
-        lever,
-        moment: [0.0; 2],
-    }
-}
-
 /// The first five dofs of a shaft: of a rigid one, all.
 pub fn first_dofs(q: &[f64]) -> [f64; N_SHAFT] {
     std::array::from_fn(|i| q[i])
-}
-
-fn add_lever(lever: &mut [f64; 3], station: &Station, load: [f64; N_SHAFT], sign: f64) {
-    let pairs = lever.iter_mut().zip(load);
-    pairs.for_each(|(sum, force)| *sum += sign * station.lever * force);
 }

@@ -72,9 +72,7 @@ fn free_shaft((assembly, solution): (&Assembly, &AssemblySolution), free: &[usiz
     }
     let (n, arm) = (shaft.n(), assembly.scales().tilt_arm);
     let of_levers = assembly.of_levers(solution);
-    for (row, more) in shaft.stiffness.chunks_exact_mut(n).zip(&of_levers) {
-        row.iter_mut().zip(more).for_each(|(sum, more)| *sum += more);
-    }
+    Station::on_rigid_shaft(0.0).add_matrix(&of_levers, n, &mut shaft.stiffness);
     let pick = |matrix: &[f64]| -> Vec<f64> {
         let row = |i: &usize| free.iter().map(|k| matrix[n * i + k]).collect::<Vec<f64>>();
         free.iter().flat_map(row).collect()

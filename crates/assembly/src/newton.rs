@@ -16,7 +16,7 @@ use dynamics::stiffness::N_SHAFT;
 use dynamics::system::Interval;
 
 use crate::error::AssemblyError;
-use crate::loads::{ShaftLoads, first_dofs, lever_stiffness};
+use crate::loads::{ShaftLoads, first_dofs};
 use crate::place::Seating;
 use crate::shaft::{ShaftBody, Station, times};
 use crate::support::{SupportAnswer, Supports};
@@ -45,6 +45,13 @@ pub struct Mount {
     pub place: Seating,
     /// The place on the shaft.
     pub station: Station,
+}
+
+impl Mount {
+    /// The place, with a load on what holds it there, in the frame of the shaft.
+    pub fn loaded(&self, by_holder: [f64; N_SHAFT]) -> (Station, [f64; N_SHAFT]) {
+        (self.station, self.place.orientation.turned(by_holder))
+    }
 }
 
 /// Sizes of a search.
@@ -171,15 +178,16 @@ impl Problem<'_> {
             asked.push((mount.name.as_str(), own));
         }
         let answers = supports.answers(&asked)?;
-        for (mount, answer) in self.mounts.iter().zip(&answers) {
-            let load = mount.place.orientation.turned(answer.load);
-            mount.station.add_load(load.map(|f| -f), &mut residual);
+        let pairs = self.mounts.iter().zip(&answers);
+        let held: Vec<_> = pairs.map(|(mount, answer)| mount.loaded(answer.load)).collect();
+        for ((station, load), answer) in held.iter().zip(&answers) {
+            station.add_load(load.map(|f| -f), &mut residual);
             largest = largest.max(answer.force);
             for (i, f) in load.iter().enumerate() {
                 largest = largest.max(f.abs() * self.length(i));
             }
         }
-        let levers = self.levers(&answers);
+        let levers = self.load.beyond_straight(self.shaft, held.into_iter());
         if let Some(levers) = &levers {
             let more = levers.over(Interval::Rest, [first_dofs(&q); 2]);
             residual.iter_mut().zip(more).for_each(|(sum, more)| *sum += more);
@@ -195,16 +203,6 @@ impl Problem<'_> {
             error,
             limit: self.scales.tolerance.max(round_off),
         })
-    }
-
-    /// Levers of all forces on a rigid shaft.
-    fn levers(&self, answers: &[SupportAnswer]) -> Option<TiltedLoads> {
-        let on_bearing = |(mount, answer): (&'_ Mount, &SupportAnswer)| {
-            let load = mount.place.orientation.turned(answer.load);
-            (mount.station, load)
-        };
-        let on_bearings = self.mounts.iter().zip(answers).map(on_bearing);
-        self.load.beyond_straight(self.shaft, on_bearings)
     }
 
     /// Forces of which the elastic forces of the shaft are the small sum, N.
@@ -226,9 +224,7 @@ impl Problem<'_> {
             mount.station.at(&at.q).add_matrix(&turned, n, &mut tangent);
         }
         if let Some(levers) = &at.levers {
-            let matrix = lever_stiffness(levers, first_dofs(&at.q));
-            let sums = tangent.iter_mut().zip(matrix.as_flattened());
-            sums.for_each(|(sum, more)| *sum += more);
+            Station::on_rigid_shaft(0.0).add_matrix(&levers.stiffness(first_dofs(&at.q)), n, &mut tangent);
         }
         tangent
     }

@@ -43,6 +43,9 @@ impl Station {
     /// Displacement of a place that was asked for of a straight shaft.
     pub fn displacement(&self, q: &[f64]) -> [f64; N_SHAFT] {
         let mut place = self.moved(q);
+        if self.lever == 0.0 {
+            return place;
+        }
         let [tilt_x, tilt_y] = [q[self.first + 3], q[self.first + 4]];
         let square = tilt_x * tilt_x + tilt_y * tilt_y;
         let [c, e] = angle_functions(square);

@@ -20,7 +20,7 @@ use crate::assembly::{Assembly, AssemblySolution, AssemblySolver};
 use crate::error::AssemblyError;
 use crate::housing::{SharedBody, coupled};
 use crate::housing_damping::damping_in_bodies;
-use crate::loads::{first_dofs, lever_stiffness, levers};
+use crate::loads::{ShaftLoads, first_dofs};
 use crate::shaft::{Station, applied};
 
 /// Bearings of an assembly to first order.
@@ -241,9 +241,10 @@ impl LinearAssembly {
             }
             self.add_couplings(&stations, N_SHAFT, &mut sum);
             let pushed = stations.into_iter().zip(self.on_bearings.iter().copied());
-            let of_levers = lever_stiffness(&levers(pushed), first_dofs(&self.shaft));
-            let sums = sum.iter_mut().zip(of_levers.as_flattened());
-            sums.for_each(|(sum, more)| *sum += more);
+            if let Some(levers) = ShaftLoads::none(shaft).beyond_straight(shaft, pushed) {
+                let of_levers = levers.stiffness(first_dofs(&self.shaft));
+                Station::on_rigid_shaft(0.0).add_matrix(&of_levers, N_SHAFT, &mut sum);
+            }
             return Ok(square(&sum));
         }
         let n = shaft.n();

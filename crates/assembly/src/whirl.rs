@@ -248,9 +248,7 @@ pub fn equations(
 /// Matrices of the shaft at a speed with the levers of all forces, of `n` rows with room for what follows its dofs.
 fn of_shaft((shaft, linear): (&ShaftBody, &LinearAssembly), n: usize, speed: f64) -> WhirlMatrices {
     let mut matrices = of_shaft_alone(shaft, n, speed);
-    for (row, more) in matrices.stiffness.chunks_exact_mut(n).zip(&linear.of_levers) {
-        row.iter_mut().zip(more).for_each(|(sum, more)| *sum += more);
-    }
+    Station::on_rigid_shaft(0.0).add_matrix(&linear.of_levers, n, &mut matrices.stiffness);
     matrices
 }
 

@@ -49,11 +49,6 @@ impl Speed {
         self.values.iter().all(|speed| *speed == 0.0)
     }
 
-    /// Whether it is not the same at all times.
-    pub fn changes(&self) -> bool {
-        self.values.iter().any(|speed| *speed != self.values[0])
-    }
-
     /// Speed, rad/s.
     pub fn at(&self, t: f64) -> f64 {
         piecewise_linear(&self.times, &self.values, t)[0]

@@ -169,7 +169,9 @@ impl Linearisation {
             n_balls: parts.balls.len(),
             ports: [None, None],
             closing: damped.map_or(Vec::new(), |damped| closing(parts, &system, &damped)),
-            load_stiffness: load_stiffness(parts, &solution.displacements.shaft),
+            load_stiffness: parts.shaft.tilted.map_or([[0.0; N_SHAFT]; N_SHAFT], |loads| {
+                loads.stiffness(solution.displacements.shaft)
+            }),
             leaves_out_mass_damping: laws.rings.is_some_and(|rings| rings.mass > 0.0),
         })
     }
@@ -299,19 +301,6 @@ fn hold_unloaded(parts: &BearingParts, n: usize, stiffness: &mut [f64]) {
     for i in balls.step_by(2) {
         hold_sliding(n, i, stiffness);
     }
-}
-
-/// Negative growth of the moments of loads on the shaft with its tilts.
-fn load_stiffness(parts: &BearingParts, shaft: &[f64; N_SHAFT]) -> ShaftMatrix {
-    let mut matrix = [[0.0; N_SHAFT]; N_SHAFT];
-    let slopes = parts
-        .shaft
-        .tilted
-        .map_or([[0.0; 2]; 2], |loads| loads.slopes([shaft[3], shaft[4]]));
-    for (row, slopes) in matrix[3..].iter_mut().zip(slopes) {
-        (row[3], row[4]) = (0.0 - slopes[0], 0.0 - slopes[1]);
-    }
-    matrix
 }
 
 /// Adds the growth of loads that follow the contact angles: d residual/d angle, of each site, times d angle/dx.

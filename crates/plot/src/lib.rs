@@ -100,9 +100,8 @@ pub fn plot(request: &Plot) -> Result<(), Failure> {
     answer::add("folder", &out);
     answer::add("figures", &names);
     print::line(format_args!(
-        "{} {} as svg and png in {}: {}",
-        names.len(),
-        if names.len() == 1 { "figure" } else { "figures" },
+        "{} as svg and png in {}: {}",
+        print::counted(names.len(), "figure"),
         out.display(),
         names.join(", ")
     ));

@@ -4,6 +4,7 @@ use std::path::Path;
 
 use anyhow::{Context, anyhow};
 use checkpoint::{all_steps, open_regular, read_about, read_any_step, step_file_name};
+use comm::print::counted;
 use results::about::COMMIT;
 use results::failure::Failure;
 use results::integrity::doubts;
@@ -92,8 +93,7 @@ fn files(dir: &Path) -> anyhow::Result<Vec<(String, u64)>> {
     }
     files.sort();
     if steps > 0 {
-        let noun = if steps == 1 { "step file" } else { "step files" };
-        files.push((format!("{steps} {noun}"), step_bytes));
+        files.push((counted(steps, "step file"), step_bytes));
     }
     Ok(files)
 }

@@ -9,8 +9,7 @@ use contact::film::{Film, FilmContact, Lubricant};
 use contact::{BySide, Side};
 use dynamics::Model;
 use dynamics::balls::BallResult;
-use dynamics::model::elastic;
-use scene::{Materials, Roughness, Scene, mean_over_ball};
+use scene::{Roughness, Scene, mean_over_ball};
 use serde::Serialize;
 
 /// What films of a bearing take besides its state.
@@ -40,17 +39,11 @@ impl FilmLaw {
     /// That of a scene; None without `[lubricant]`.
     pub fn new(scene: &Scene, model: &Model) -> Option<FilmLaw> {
         let lubrication = scene.lubricant?;
-        let Materials { rings, balls } = &scene.materials;
-        let bodies = [rings, balls]
-            .map(|material| elastic(&scene::material(material).expect("materials were checked")));
-        let geometry = &model.geometry;
-        let contact =
-            |side: Side| FilmContact::of_raceway(geometry, side, &model.hertz[side.index()], bodies);
         Some(FilmLaw {
-            contacts: Side::BOTH.map(contact),
+            contacts: Side::BOTH.map(|side| model.film_contact(side)),
             lubricant: lubrication.lubricant,
             roughness: lubrication.roughness,
-            ball_radius: 0.5 * geometry.ball_diameter,
+            ball_radius: 0.5 * model.geometry.ball_diameter,
             means: scene.effects.slip().map(mean_over_ball),
         })
     }

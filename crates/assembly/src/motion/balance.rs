@@ -118,12 +118,16 @@ impl ShaftStep<'_> {
             part.answer(own).map_err(AssemblyError::of_bearing(&mount.name))
         };
         let answers = of_each(parts.iter_mut().zip(self.mounts), answer)?;
-        for (mount, answer) in self.mounts.iter().zip(&answers) {
-            let load = mount.place.orientation.turned(answer.load);
-            mount.station.add_load(load.map(|f| -f), &mut residual);
+        let pairs = self.mounts.iter().zip(&answers);
+        let held: Vec<_> = pairs.map(|(mount, answer)| mount.loaded(answer.load)).collect();
+        for ((station, load), answer) in held.iter().zip(&answers) {
+            station.add_load(load.map(|f| -f), &mut residual);
             scale = scale.max(answer.force);
         }
-        self.add_levers(&answers, &end, &mut residual);
+        if let Some(levers) = self.load.beyond_straight(self.shaft, held.into_iter()) {
+            let more = levers.over(self.interval(), [q, &end].map(first_dofs));
+            residual.iter_mut().zip(more).for_each(|(sum, more)| *sum += more);
+        }
         let free = (0..n).filter(|&i| self.shaft.held[i].is_none());
         let error = free.fold(0.0f64, |m, i| m.max(self.as_force(i, residual[i].abs())));
         if !error.is_finite() {
@@ -136,19 +140,6 @@ impl ShaftStep<'_> {
             scale,
             answers,
         })
-    }
-
-    /// Adds what a rigid shaft that tilts has of all levers beyond those of a straight one.
-    fn add_levers(&self, answers: &[HeldAnswer], end: &[f64], residual: &mut [f64]) {
-        let on_bearing = |(mount, answer): (&Mount, &HeldAnswer)| {
-            let load = mount.place.orientation.turned(answer.load);
-            (mount.station, load)
-        };
-        let on_bearings = self.mounts.iter().zip(answers).map(on_bearing);
-        if let Some(levers) = self.load.beyond_straight(self.shaft, on_bearings) {
-            let more = levers.over(self.interval(), [self.start[0], end].map(first_dofs));
-            residual.iter_mut().zip(more).for_each(|(sum, more)| *sum += more);
-        }
     }
 
     /// The point along a step, halved until the residual does not grow.

@@ -60,6 +60,15 @@ impl TiltedLoads {
         [0, 1].map(|i| [columns[0][i], columns[1][i]])
     }
 
+    /// Negative growth of the generalised loads with the displacements of the shaft: what they add to its stiffness.
+    pub fn stiffness(&self, [.., about_x, about_y]: [f64; 5]) -> [[f64; 5]; 5] {
+        let mut matrix = [[0.0; 5]; 5];
+        for (row, slopes) in matrix[3..].iter_mut().zip(self.slopes([about_x, about_y])) {
+            (row[3], row[4]) = (0.0 - slopes[0], 0.0 - slopes[1]);
+        }
+        matrix
+    }
+
     /// What the virtual work of the forces through a tilt has more than the change of their potential, J.
     pub fn virtual_excess(&self, tilt: [f64; 2]) -> f64 {
         let square = tilt[0] * tilt[0] + tilt[1] * tilt[1];

@@ -36,6 +36,8 @@ impl SteadyBalls {
     pub fn of(model: &Model, now: &Now) -> Result<Option<SteadyBalls>, DynamicsError> {
         let Some(FreeRow {
             balls,
+            seen,
+            angles,
             speeds,
             kinematic_orbit,
         }) = FreeRow::of(model, now)
@@ -71,9 +73,10 @@ impl SteadyBalls {
                 ..SteadyRolling::default()
             }));
         }
-        let lines = |ball: usize| lines_of(model, now, ball);
+        let lines_of =
+            |ball: usize| Side::BOTH.map(|side| lines(model, (seen, angles), 2 * ball + side.index()));
         Ok(Some(SteadyBalls {
-            lines: (0..balls.len()).map(lines).collect(),
+            lines: (0..balls.len()).map(lines_of).collect(),
             contacts: balls.iter().map(|ball| ball.contacts).collect(),
             balls: all,
             kinematic_orbit,
@@ -185,6 +188,10 @@ impl SteadyBalls {
 /// Free balls where they stand, and what turns them.
 struct FreeRow<'m> {
     balls: Vec<SteadyBall<'m>>,
+    /// Contacts and balls as they stand.
+    seen: AtEquilibrium<'m>,
+    /// Contact angles, rad, by site.
+    angles: &'m [f64],
     /// Speeds of the rings, rad/s.
     speeds: BySide<f64>,
     /// Speed round the axis of pure rolling at the free contact angle, rad/s.
@@ -193,7 +200,7 @@ struct FreeRow<'m> {
 
 impl<'m> FreeRow<'m> {
     /// None where balls are not free, or nothing is known of the contacts yet.
-    fn of(model: &'m Model, now: &Now) -> Option<FreeRow<'m>> {
+    fn of(model: &'m Model, now: &Now<'m>) -> Option<FreeRow<'m>> {
         let speeds = model.effects.iter().find_map(|effect| effect.rolling_speeds())?;
         let (seen, angles, traction) = (now.seen?, now.angles?, model.traction()?);
         let kinematic_orbit = Kinematics::new(&model.geometry, [0.0; 2]).cage_speed(speeds, now.time);
@@ -210,6 +217,8 @@ impl<'m> FreeRow<'m> {
         };
         Some(FreeRow {
             balls: (0..model.geometry.n_balls).map(ball).collect(),
+            seen,
+            angles,
             speeds,
             kinematic_orbit,
         })
@@ -269,14 +278,6 @@ fn on_strips(
     let half_width = model.hertz[site % 2].semi_axes(seen.forces[site]).groove;
     let approach = (seen.approaches[site], 0.0);
     Some(strips.places(&traction.places, half_width, approach, angles[site]))
-}
-
-/// Where the loads of a ball's contacts on strips lie; none of Hertz's ellipse.
-fn lines_of(model: &Model, now: &Now, ball: usize) -> BySide<Vec<PressureLine>> {
-    let (Some(seen), Some(angles)) = (now.seen, now.angles) else {
-        return BySide::default();
-    };
-    Side::BOTH.map(|side| lines(model, (seen, angles), 2 * ball + side.index()))
 }
 
 /// Where the load of a contact on strips lies; none of Hertz's ellipse.

@@ -1,7 +1,6 @@
 //! Tables that a scene may have: a free cage, a body round the outer ring; and those that change nothing that a run
 //! computes, for lubrication, life and heat.
 
-use contact::Side;
 use dynamics::interactions::cage::Cage;
 use dynamics::kinematics::{BallSpeeds, RingSpeeds};
 use input::Problems;
@@ -80,15 +79,10 @@ impl RawScene {
         speeds: Option<&RingSpeeds>,
         problems: &mut Problems,
     ) -> Option<Lubrication> {
-        let changes =
-            || speeds.is_some_and(|speeds| Side::BOTH.iter().any(|side| speeds.of(*side).changes()));
         let rolls = self.speed.is_some() && self.modes.is_none();
-        let turns = rolls.then(|| {
-            if changes() {
-                Turns::Changing
-            } else {
-                Turns::Steadily
-            }
+        let turns = rolls.then(|| match speeds.is_some_and(RingSpeeds::changes) {
+            true => Turns::Changing,
+            false => Turns::Steadily,
         });
         self.lubricant.as_ref()?.check(turns, problems)
     }
