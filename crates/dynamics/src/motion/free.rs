@@ -301,6 +301,7 @@ impl Motion<'_> {
             ball: [free.places[ball], free.velocities[ball], free.turnings[ball]],
             groove,
             law: site.law,
+            across: site.across,
             touching: site.touching,
             sign: site.side.sign(),
             surface: self.rolling_surface((free, state.angles[index]), span, site),

@@ -6,7 +6,7 @@
 
 use std::sync::{Arc, OnceLock};
 
-use contact::{Side, SphereCompliance};
+use contact::Side;
 use timer::SharedLaps;
 
 use crate::kinematics::{Kinematics, RingSpeeds};
@@ -361,9 +361,6 @@ fn check_free(model: &Model, settings: &MotionSettings) -> Result<(), DynamicsEr
         return refuse(
             "balls.motion = \"free\" with an integrator that dissipates; use integrator = \"average_acceleration\"",
         );
-    }
-    if model.sphere != SphereCompliance::default() {
-        return refuse("balls.motion = \"free\" with contact.ball = \"sphere\"; use \"half_space\"");
     }
     Ok(())
 }

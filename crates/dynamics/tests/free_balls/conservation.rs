@@ -11,6 +11,7 @@ use dynamics::{Model, ShaftDof};
 use input::Schedule;
 
 use super::bearings::{coulomb, freed, radial, rpm, run, settings, thrust};
+use super::spheres::sphere;
 use crate::support::{equilibrium, relative};
 
 /// The 7010C with three balls.
@@ -26,6 +27,16 @@ fn three_balls(axial: f64) -> Model {
 /// through the contacts.
 #[test]
 fn momentum_is_kept_over_ten_thousand_steps_with_friction() {
+    momentum_is_kept(|model| model);
+}
+
+/// Wrong: what both contacts of a spherical ball share would be no pair of opposite forces.
+#[test]
+fn momentum_is_kept_with_spherical_balls() {
+    momentum_is_kept(sphere);
+}
+
+fn momentum_is_kept(elastic: impl Fn(Model) -> Model) {
     let (dt, n, force) = (1e-5, 10_000, 60.0);
     let speeds = RingSpeeds::from(Speed::table(
         vec![0.0, 0.05, 0.1],
@@ -39,6 +50,7 @@ fn momentum_is_kept_over_ten_thousand_steps_with_friction() {
     };
     model.effects.push(Box::new(SpringPreload { seat }));
     model.shaft = [ShaftDof::Prescribed(0.0); 5];
+    let mut model = elastic(model);
     let solution = equilibrium(&model);
     model.shaft[2] = ShaftDof::Free;
     let motion = Motion::new(&model, settings(dt, &speeds)).unwrap();

@@ -156,21 +156,6 @@ fn what_free_balls_cannot_do_is_said() {
                     no cage along their own axes, and balls that lag shift it; guide it by a land, cage.guidance = \
                     \"outer_land\" or \"inner_land\"";
     assert!(error.ends_with(expected), "{error}");
-    let mut sphere = freed(thrust(1000.0), coulomb(0.07, Creep::Elastic), &speeds);
-    sphere.sphere = contact::SphereCompliance::new(
-        dynamics::model::elastic(&sphere.ball_material),
-        sphere.geometry.ball_diameter,
-        &sphere.hertz,
-    );
-    let error = Motion::new(&sphere, conserving.clone())
-        .err()
-        .unwrap()
-        .to_string();
-    assert_eq!(
-        error,
-        "a moving bearing cannot have balls.motion = \"free\" with contact.ball = \"sphere\"; use \"half_space\" in \
-         this version"
-    );
     let dissipating = MotionSettings {
         integrator: Integrator::chung_hulbert(0.8),
         ..conserving

@@ -9,6 +9,7 @@ mod flexible;
 mod hard;
 mod ledger;
 mod skid;
+mod spheres;
 mod steady;
 mod surfaces;
 mod thrust;

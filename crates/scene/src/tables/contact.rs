@@ -57,7 +57,7 @@ pub struct Contact {
     /// a ring has quadratic ones.
     pub patch_length: Option<f64>,
     /// What balls yield. By default spheres, but half-spaces with rigid rings (the Jones-Harris limit), with facets
-    /// (the paper's way), where a stiffness is given and where balls are free.
+    /// (the paper's way) and where a stiffness is given.
     pub ball: BallElasticity,
     /// What they see of the inner groove: projected by default, but a torus of balls that move freely.
     pub groove_circle: SeenGroove,
@@ -136,7 +136,7 @@ impl RawContact {
         }
         let is_hertz = self.inner_stiffness.is_none() && self.outer_stiffness.is_none();
         let usual = match self.mode {
-            ContactMode::Patch if is_hertz && balls == BallMotion::Kinematic => BallElasticity::Sphere,
+            ContactMode::Patch if is_hertz => BallElasticity::Sphere,
             _ => BallElasticity::HalfSpace,
         };
         Contact {
@@ -155,12 +155,6 @@ impl RawContact {
     fn check_free(&self, balls: BallMotion, problems: &mut Problems) {
         if balls != BallMotion::Free {
             return;
-        }
-        if self.ball == Some(BallElasticity::Sphere) {
-            problems.add(
-                "contact.ball is \"sphere\", but free balls yield as half-spaces: remove it, or use balls.motion = \
-                 \"kinematic\"",
-            );
         }
         if self.groove_circle == Some(SeenGroove::Projected) {
             problems.add(

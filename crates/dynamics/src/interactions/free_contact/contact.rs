@@ -2,14 +2,14 @@
 
 use std::sync::Arc;
 
-use contact::{ContactLaw, Meridian};
+use contact::{AcrossCompliance, ContactLaw, Meridian};
 
 use super::jet::{Jet, N_LENGTHS, cross, dot, fixed, minus, plus, scaled, times};
 use super::place::{Bodies, ContactFrame, GrooveCircle, SlipJets, Standing, frame, standing};
 use super::ring_step::{ElasticPlace, Middle, RingStep, SlopeForce};
 use super::rolling_surface::{OverSurface, RollingSurface, StripTerms};
 use super::surface_force::{SurfaceForce, add_surface, over_surface};
-use crate::interactions::contact_damping::{ContactDamping, StepDamping};
+use crate::interactions::contact_damping::{ContactDamping, StepDamping, Viscous};
 use crate::interactions::discrete_gradient::{ContactScheme, MeanForce, mean_force};
 use crate::interactions::traction::{Ellipse, Resultant, Slip, Traction};
 
@@ -34,6 +34,8 @@ pub struct ContactStep {
     pub groove: GrooveCircle,
     /// Force law.
     pub law: ContactLaw,
+    /// By how much it yields under the force of the ball's other contact.
+    pub across: AcrossCompliance,
     /// |l| at which ball and groove touch, m.
     pub touching: f64,
     /// Sign of the raceway's side.
@@ -54,6 +56,31 @@ pub struct ContactStep {
     pub small_slip: f64,
     /// Which slip traction follows.
     pub slip_at: SlipAt,
+}
+
+/// Where ball and ring stand over a step.
+pub(super) struct StandingOver {
+    /// Lengths at the end.
+    pub x: [Jet; N_LENGTHS],
+    /// At the start.
+    pub start: Standing,
+    /// At the end.
+    pub last: Standing,
+    /// In the middle.
+    pub mid: Middle,
+}
+
+/// The normal force of a contact over a step.
+pub(super) struct Pressed {
+    /// On the ring.
+    pub normal: MeanForce,
+    /// The same, radial and axial, as it grows with the lengths.
+    pub load: [Jet; 2],
+}
+
+/// l, m.
+pub(super) fn reach_of(at: &Standing) -> Meridian {
+    Meridian::from(at.reach.map(|x| x.value))
 }
 
 /// Forces and slips of a contact over a step.
@@ -92,15 +119,33 @@ impl FoundContact {
 
 impl ContactStep {
     /// The contact at lengths at start and end.
-    pub fn evaluate(&self, [from, end]: [[f64; N_LENGTHS]; 2]) -> FoundContact {
+    pub fn evaluate(&self, lengths: [[f64; N_LENGTHS]; 2]) -> FoundContact {
+        let at = self.placed(lengths);
+        let over = self.over_surface((&at.start, &at.last), (&at.mid, &at.x));
+        let normal = match &over {
+            Some(over) => over.normal,
+            None => self.normal_force(&at.start, &at.last),
+        };
+        let load = [0, 1].map(|i| chain(normal.force[i], normal.tangent[i].into(), at.last.reach));
+        self.found(at, Pressed { normal, load }, over)
+    }
+
+    pub(super) fn placed(&self, [from, end]: [[f64; N_LENGTHS]; 2]) -> StandingOver {
         let x: [Jet; N_LENGTHS] = std::array::from_fn(|i| Jet::length(i, end[i]));
         let [start, last] = [self.start(&from), self.standing_at_end(&x)];
         let mid = self.middle(&start, &last, &x);
-        let over = self.over_surface((&start, &last), (&mid, &x));
-        let normal = match &over {
-            Some(over) => over.normal,
-            None => self.normal_force(&start, &last),
-        };
+        StandingOver { x, start, last, mid }
+    }
+
+    /// The contact under a normal force.
+    pub(super) fn found(
+        &self,
+        at: StandingOver,
+        pressed: Pressed,
+        over: Option<OverSurface>,
+    ) -> FoundContact {
+        let StandingOver { x, start, last, mid } = at;
+        let Pressed { normal, load } = pressed;
         let slip = match self.slip_at {
             SlipAt::End => self.slip_at_end(&last, &x),
             SlipAt::Middle => mid.slip,
@@ -114,7 +159,6 @@ impl ContactStep {
             &slipping,
             (force, self.small_slip),
         );
-        let load = [0, 1].map(|i| chain(normal.force[i], normal.tangent[i].into(), last.reach));
         let action = actions(&traction, &slip, (force, load));
         let mut resists = [Jet::default(); N_LENGTHS];
         self.add_normal(&mid, (&start, &last), load, &mut resists);
@@ -197,11 +241,15 @@ impl ContactStep {
     }
 
     fn normal_force(&self, start: &Standing, end: &Standing) -> MeanForce {
-        let reach = [start.reach, end.reach].map(|l| l.map(|x| x.value));
-        let damping = self
-            .step_damping()
-            .map(|damping| damping.viscous(self.touching, reach));
-        mean_force(&self.law, self.touching, reach, self.scheme, damping)
+        let reach = [start, end].map(reach_of);
+        let l = reach.map(Meridian::to_array);
+        mean_force(&self.law, self.touching, l, self.scheme, self.viscous(reach))
+    }
+
+    /// What damping does along the normal, from l at the start to l at the end, m.
+    pub(super) fn viscous(&self, reach: [Meridian; 2]) -> Option<Viscous> {
+        let damping = self.step_damping()?;
+        Some(damping.viscous(self.touching, reach.map(Meridian::to_array)))
     }
 
     /// The contact on the surfaces over which it rolls; None where they are smooth.
@@ -386,7 +434,7 @@ impl ContactStep {
 }
 
 /// A component of the normal force as it grows with l at the end.
-fn chain(value: f64, tangent: Meridian, reach: [Jet; 2]) -> Jet {
+pub(super) fn chain(value: f64, tangent: Meridian, reach: [Jet; 2]) -> Jet {
     let mut jet = reach[0] * tangent.radial + reach[1] * tangent.axial;
     jet.value = value;
     jet

@@ -4,6 +4,8 @@
 //! along (l1 + l0)/(|l1| + |l0|), [radial, axial]. The radial part acts in space along (b'_0 + b'_1)/(r_0 + r_1) across
 //! the ring's axis: its work is exactly F_r (r_1 - r_0), and it has no moment about that axis at the mean place.
 //!
+//! Both contacts of a ball that yields as a sphere have one energy ([`between`]).
+//!
 //! **Traction** ([`super::traction`]) follows the slip of the *end* of the step, in the frame of the end; its
 //! components act in the frame of the *middle*, at the mean place of the ball. The midpoint rule would let slip
 //! alternate from step to step; end velocities in the frame of the middle would be of first order. The work on both
@@ -36,6 +38,7 @@
 //! what carries the ring (5) or motion of an elastic ring at the ball (groove r, z; patch t, q). That of the groove has
 //! the finite motion of the shaft in it, as of balls in the cage's kinematics ([`crate::system::Circle`]).
 
+pub mod between;
 pub mod contact;
 pub mod jet;
 pub mod orientation;
@@ -115,8 +118,12 @@ impl FreeContacts {
 
     /// Forces and slips of all contacts at these lengths.
     pub fn found(&self, lengths: Lengths) -> Vec<FoundContact> {
-        let at = |(i, contact): (usize, &ContactStep)| contact.evaluate(lengths.of(i));
-        self.contacts.iter().enumerate().map(at).collect()
+        let balls = self.contacts.as_chunks().0.iter().enumerate();
+        let at = |(ball, contacts)| {
+            let [inner, outer] = [2 * ball, 2 * ball + 1];
+            between::evaluate(contacts, [lengths.of(inner), lengths.of(outer)])
+        };
+        balls.flat_map(at).collect()
     }
 }
 

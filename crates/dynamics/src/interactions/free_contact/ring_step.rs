@@ -7,6 +7,8 @@ use super::place::{ContactFrame, SlipJets};
 pub const FREE_FEET: usize = 2;
 /// Functionals of a contact on an elastic ring: two of all its nodal weights.
 pub const FREE_PORTS: usize = 2 * FREE_FEET;
+/// Lengths of a contact that are those of its ball: displacement and rotation vector.
+pub const BALL_LENGTHS: usize = 6;
 /// First of the lengths of a contact that are the motion of an elastic ring's ports.
 pub const GROOVE_LENGTH: usize = 6;
 
