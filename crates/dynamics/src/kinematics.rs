@@ -295,6 +295,26 @@ impl Rolling {
     }
 }
 
+/// d/dpsi over the balls of a bearing on one course, row-major, by whether something touches each: that of the
+/// trigonometric polynomial through them, 0 of a ball that nothing touches (Trefethen, Spectral Methods in MATLAB,
+/// 2000, ch. 3).
+pub fn course_slopes(touched: &[bool]) -> Vec<f64> {
+    let balls = touched.len();
+    let entry = |k: usize| {
+        let (i, j) = (k / balls, k % balls);
+        if i == j || !touched[i] || !touched[j] {
+            return 0.0;
+        }
+        let sign = if (i + j).is_multiple_of(2) { 0.5 } else { -0.5 };
+        let half = 0.5 * std::f64::consts::TAU * (i as f64 - j as f64) / balls as f64;
+        match balls.is_multiple_of(2) {
+            true => sign / half.tan(),
+            false => sign / half.sin(),
+        }
+    };
+    (0..balls * balls).map(entry).collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -241,6 +241,11 @@ pub trait Effect: Send + Sync {
         [0.0; 3]
     }
 
+    /// Speed of the balls on their orbits, rad/s, whose inertia acts in an equilibrium at a time, s; None: it does not.
+    fn orbit_speed(&self, _model: &Model, _time: f64) -> Option<f64> {
+        None
+    }
+
     /// Slot of free balls: speeds of the rings between which they roll in an equilibrium.
     fn rolling_speeds(&self) -> Option<&RingSpeeds> {
         None
@@ -388,6 +393,13 @@ impl Model {
     /// The seat of the outer ring, if it slides along the axis.
     pub fn seat(&self) -> Option<Seat> {
         self.effects.iter().find_map(|effect| effect.seat())
+    }
+
+    /// Speed of the balls on their orbits, rad/s, whose inertia acts in an equilibrium at a time, s; None: it does not.
+    pub fn orbit_speed(&self, time: f64) -> Option<f64> {
+        self.effects
+            .iter()
+            .find_map(|effect| effect.orbit_speed(self, time))
     }
 
     /// Traction of the balls, if they are free.

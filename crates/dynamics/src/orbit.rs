@@ -11,12 +11,11 @@
 //! contact damping c the second is a stiffness c W that turns: it takes from the drive of the balls and feeds motions
 //! that go round along with them, more slowly than they do, as damping in a rotor does.
 //!
-//! d/dpsi is that of the trigonometric polynomial through the balls (Trefethen, Spectral Methods in MATLAB, 2000, ch.
-//! 3), of balls that nothing touches 0. It is exact where a shaft moves or tilts on three or more balls alike, and
-//! leaves out that matrices change as single balls pass. Elastic rings give way without it, as in motion.
+//! d/dpsi is that of the trigonometric polynomial through the balls ([`course_slopes`]). It is exact where a shaft
+//! moves or tilts on three or more balls alike, and leaves out that matrices change as single balls pass. Elastic rings
+//! give way without it, as in motion.
 
-use std::f64::consts::TAU;
-
+use crate::kinematics::course_slopes;
 use crate::stiffness::{Linearisation, N_SHAFT, is_held};
 
 impl Linearisation {
@@ -25,24 +24,41 @@ impl Linearisation {
         if speed == 0.0 {
             return self;
         }
-        let n = self.n;
         let slopes = self.slopes();
+        self.add_orbits(&slopes, ball_mass * speed * speed);
+        let (n, balls) = (self.n, self.n_balls);
         let mut damping = self.damping.take().unwrap_or_else(|| vec![0.0; n * n]);
-        let balls = self.n_balls;
-        for i in 0..balls {
-            for j in 0..balls {
-                let twice: f64 = (0..balls)
-                    .map(|k| slopes[balls * i + k] * slopes[balls * k + j])
-                    .sum();
-                for dof in 0..2 {
-                    let at = n * (N_SHAFT + 2 * i + dof) + N_SHAFT + 2 * j + dof;
-                    damping[at] += 2.0 * ball_mass * speed * slopes[balls * i + j];
-                    self.stiffness[at] += ball_mass * speed * speed * twice;
-                }
+        for (i, j) in (0..balls * balls).map(|k| (k / balls, k % balls)) {
+            for dof in 0..2 {
+                let at = n * (N_SHAFT + 2 * i + dof) + N_SHAFT + 2 * j + dof;
+                damping[at] += 2.0 * ball_mass * speed * slopes[balls * i + j];
             }
         }
         self.damping = Some(damping);
         self
+    }
+
+    /// The same with that inertia where all stands still, as an equilibrium has it with `[effects.orbit_inertia]`.
+    pub(crate) fn on_orbits(mut self, ball_mass: f64, speed: f64) -> Linearisation {
+        let slopes = self.slopes();
+        self.add_orbits(&slopes, ball_mass * speed * speed);
+        self
+    }
+
+    /// Adds mass times squared speed, N/m, times the second derivative over the balls; once.
+    fn add_orbits(&mut self, slopes: &[f64], inertia: f64) {
+        if std::mem::replace(&mut self.has_orbits, true) {
+            return;
+        }
+        let (n, balls) = (self.n, self.n_balls);
+        for (i, j) in (0..balls * balls).map(|k| (k / balls, k % balls)) {
+            let twice: f64 = (0..balls)
+                .map(|k| slopes[balls * i + k] * slopes[balls * k + j])
+                .sum();
+            for dof in 0..2 {
+                self.stiffness[n * (N_SHAFT + 2 * i + dof) + N_SHAFT + 2 * j + dof] += inertia * twice;
+            }
+        }
     }
 
     /// The same with damped contacts that close because their balls pass with `speed`, rad/s.
@@ -57,23 +73,9 @@ impl Linearisation {
     /// d/dpsi over the balls, row-major.
     fn slopes(&self) -> Vec<f64> {
         let (n, balls) = (self.n, self.n_balls);
-        let touched: Vec<bool> = (N_SHAFT..N_SHAFT + 2 * balls)
-            .step_by(2)
-            .map(|i| is_held(&self.stiffness[n * i..n * (i + 1)], i))
-            .collect();
-        let entry = |k: usize| {
-            let (i, j) = (k / balls, k % balls);
-            if i == j || !touched[i] || !touched[j] {
-                return 0.0;
-            }
-            let sign = if (i + j).is_multiple_of(2) { 0.5 } else { -0.5 };
-            let half = 0.5 * TAU * (i as f64 - j as f64) / balls as f64;
-            match balls.is_multiple_of(2) {
-                true => sign / half.tan(),
-                false => sign / half.sin(),
-            }
-        };
-        (0..balls * balls).map(entry).collect()
+        let touched = (N_SHAFT..N_SHAFT + 2 * balls).step_by(2);
+        let touched = touched.map(|i| is_held(&self.stiffness[n * i..n * (i + 1)], i));
+        course_slopes(&touched.collect::<Vec<bool>>())
     }
 
     /// Damping of contacts that close because their balls pass.

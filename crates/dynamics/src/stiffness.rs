@@ -82,6 +82,8 @@ pub struct Linearisation {
     pub(crate) ports: [Option<RingPorts>; 2],
     /// How contacts close that are damped, by site; empty without damping.
     pub(crate) closing: Vec<ClosingContact>,
+    /// Whether the stiffness has the inertia of the balls' orbits.
+    pub(crate) has_orbits: bool,
     /// What loads on the shaft add to its stiffness because their moments change as it tilts.
     pub load_stiffness: ShaftMatrix,
     /// Whether the rings have damping in proportion to mass, which no matrix here has.
@@ -161,8 +163,9 @@ impl Linearisation {
         let damping = damping_of(parts, &system, &x, (damped.as_deref(), laws.rings));
         let n = system.n();
         hold_unloaded(parts, n, &mut stiffness);
-        Ok(Linearisation {
+        let found = Linearisation {
             n,
+            has_orbits: false,
             stiffness,
             damping,
             ring_damping: laws.rings.map_or(0.0, |rings| rings.stiffness),
@@ -173,6 +176,10 @@ impl Linearisation {
                 loads.stiffness(solution.displacements.shaft)
             }),
             leaves_out_mass_damping: laws.rings.is_some_and(|rings| rings.mass > 0.0),
+        };
+        Ok(match model.orbit_speed(solution.pose.now.time) {
+            Some(speed) => found.on_orbits(model.ball_mass(), speed),
+            None => found,
         })
     }
 

@@ -24,6 +24,7 @@ mod near_field;
 mod objectivity;
 mod ode;
 mod orbit;
+mod orbit_inertia;
 mod outer_ring;
 mod periodic;
 mod quasi_static;

@@ -50,6 +50,7 @@ pub fn effects_context(scene: &Scene) -> Context {
         has_expansion: scene.materials.has_expansion(),
         has_lubricant: scene.lubricant.is_some(),
         turning_mass: scene.shaft.turning_mass(&scene.inner),
+        parts_courses: scene.profiles.parts_courses(&scene.effects),
     }
 }
 

@@ -15,6 +15,7 @@ pub mod gravity;
 pub mod gyroscopic_moment;
 pub(crate) mod loads;
 pub mod moment;
+pub mod orbit_inertia;
 pub mod radial_force;
 pub mod rayleigh_damping;
 pub mod rules;
@@ -36,6 +37,7 @@ pub(crate) use loads::{resultant, sum_of};
 
 pub use crate::model::Effect;
 pub use moment::Moment;
+pub use orbit_inertia::OrbitInertia;
 pub use radial_force::RadialForce;
 pub use spring_preload::SpringPreload;
 pub use table::{About, Context, EffectEntry, EffectTable, Need, RingDamping, Setting, SpeedRole, Trial};
@@ -66,6 +68,8 @@ pub struct Effects {
     pub ball_centrifugal: Option<ball_centrifugal::BallCentrifugalTable>,
     /// Gyroscopic moment of the balls.
     pub gyroscopic_moment: Option<gyroscopic_moment::GyroscopicMomentTable>,
+    /// Inertia of balls on their orbits, in equilibria.
+    pub orbit_inertia: Option<orbit_inertia::OrbitInertiaTable>,
     /// Slip of balls on the raceways.
     pub cage_slip: Option<cage_slip::CageSlipTable>,
     /// Inertia of the inner ring's turning frame.
@@ -101,6 +105,7 @@ impl Effects {
             gravity,
             ball_centrifugal,
             gyroscopic_moment,
+            orbit_inertia,
             cage_slip,
             frame_rotation,
             contact_damping,
@@ -120,6 +125,7 @@ impl Effects {
             gravity,
             ball_centrifugal,
             gyroscopic_moment,
+            orbit_inertia,
             cage_slip,
             frame_rotation,
             contact_damping,

@@ -69,6 +69,8 @@ pub enum Need {
     TurningInner,
     /// Thermal expansion of rings and balls.
     Expansion,
+    /// Balls that follow each other on one course, which stands in space.
+    OneCourse,
 }
 
 /// Values with which `raceway prices` turns an effect on.
@@ -99,6 +101,8 @@ pub struct Context {
     pub has_lubricant: bool,
     /// Mass of all that turns with the shaft, kg; None where the scene leaves it open, or meshes have a part of it.
     pub turning_mass: Option<f64>,
+    /// What keeps balls from following each other on one course, by its key; None: nothing does.
+    pub parts_courses: Option<&'static str>,
 }
 
 impl Context {
@@ -259,6 +263,14 @@ impl About {
                                  materials.{body}.expansion, such as \"11.5e-6 /K\" of bearing steel"
                             ));
                         }
+                    }
+                }
+                Need::OneCourse => {
+                    if let Some(key) = context.parts_courses {
+                        problems.add(format!(
+                            "[effects.{name}] takes balls to follow each other on one course, but with {key} each has \
+                             its own; remove one of both"
+                        ));
                     }
                 }
                 Need::TurningInner | Need::Inertia => {}

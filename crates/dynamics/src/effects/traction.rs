@@ -48,7 +48,7 @@ points = [3, 15]                # optional: places over the ellipse, along the r
 "#;
 
 /// Effects that free balls make wrong, and why.
-pub const REPLACED_BY_FREE_BALLS: [(&str, &str); 3] = [
+pub const REPLACED_BY_FREE_BALLS: [(&str, &str); 4] = [
     (
         "ball_centrifugal",
         "the centrifugal force of a free ball is its inertia, it would act twice",
@@ -56,6 +56,10 @@ pub const REPLACED_BY_FREE_BALLS: [(&str, &str); 3] = [
     (
         "gyroscopic_moment",
         "traction carries the gyroscopic moment of a free ball, it would act twice",
+    ),
+    (
+        "orbit_inertia",
+        "in equilibria free balls have no inertia along and across their orbits",
     ),
     ("cage_slip", "the slip of a free ball is a result, not given"),
 ];

@@ -229,6 +229,7 @@ mod tests {
             has_expansion: [false; 2],
             has_lubricant: false,
             turning_mass: Some(2.0),
+            parts_courses: None,
         };
         let messages = |mass: &str, eccentricity: &str, position: &str| {
             let table = UnbalanceTable {

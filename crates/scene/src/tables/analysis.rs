@@ -14,7 +14,7 @@ use super::dynamic::RawDynamic;
 use super::materials::Materials;
 use super::modes::ModesContext;
 use super::output::OutputContext;
-use super::profiles::ProfilesContext;
+use super::profiles::{ProfilesContext, SurfaceProfiles};
 use super::ring::{MeshFiles, Ring};
 use super::shaft::Shaft;
 use super::speed::{RawSpeed, SpeedUse, makes_force};
@@ -90,6 +90,7 @@ impl RawScene {
         is_flexible: [bool; 2],
         (bearing, materials): (Option<&Bearing>, Option<&Materials>),
         (shaft, inner): (&Shaft, &Ring),
+        profiles: &SurfaceProfiles,
     ) -> Context {
         let seats = bearing.map(|b| [b.bore_diameter, b.outside_diameter]);
         Context {
@@ -102,6 +103,7 @@ impl RawScene {
             has_expansion: materials.map_or([true; 2], Materials::has_expansion),
             has_lubricant: self.lubricant.is_some(),
             turning_mass: shaft.turning_mass(inner),
+            parts_courses: profiles.parts_courses(&self.effects),
         }
     }
 

@@ -344,7 +344,7 @@ impl TextSource<'_> {
         let [inner, outer] = self.rings(&raw, known, contact.mode, (&mut problems, &mut assumed));
         let flexible = [inner.body.is_some(), outer.body.is_some()];
         let shaft = raw.shaft.check(bearing.as_ref(), raw.clock(), &mut problems);
-        let context = raw.effects_context(flexible, known, (&shaft, &inner));
+        let context = raw.effects_context(flexible, known, (&shaft, &inner), &profiles);
         raw.effects.check(context, &mut problems);
         let balls = raw.balls.check(raw.balls_context(), &mut problems);
         let cage = raw.cage(balls, bearing.as_ref(), materials.as_ref(), &mut problems);

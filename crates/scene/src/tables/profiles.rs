@@ -23,6 +23,7 @@ use super::random::SplitMix64;
 use super::ring::MeshFiles;
 use super::ring_name::RingName;
 use dynamics::ContactMode;
+use dynamics::effects::Effects;
 
 /// As typed.
 #[derive(Debug, Default, Deserialize)]
@@ -111,6 +112,18 @@ impl SurfaceProfiles {
     /// Whether anything differs from smooth grooves and spheres.
     pub fn has_profiles(&self) -> bool {
         !self.balls.is_empty() || self.raceways.iter().any(|raceway| !raceway.is_empty())
+    }
+
+    /// What keeps balls from following each other on one course that stands in space, by its key.
+    pub fn parts_courses(&self, effects: &Effects) -> Option<&'static str> {
+        let causes = [
+            (self.has_profiles(), "[[profiles.*]]"),
+            (!self.oversizes.is_empty(), "[bearing.ball_diameters]"),
+            (effects.unbalance.is_some(), "[effects.unbalance]"),
+        ];
+        causes
+            .into_iter()
+            .find_map(|(is_there, key)| is_there.then_some(key))
     }
 }
 

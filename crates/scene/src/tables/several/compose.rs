@@ -342,11 +342,14 @@ fn check_output(raw: &RawSeveral, list: &DocumentMut, problems: &mut Problems) {
 
 /// Checks the effects that load the shaft, which no bearing has.
 fn check_loads(raw: &RawSeveral, problems: &mut Problems) {
+    let turns = raw.effects.unbalance.is_some();
     let on_shaft = Effects {
         axial_force: raw.effects.axial_force.clone(),
         radial_force: raw.effects.radial_force.clone(),
         moment: raw.effects.moment.clone(),
         unbalance: raw.effects.unbalance.clone(),
+        // It acts in every bearing, which does not know what turns with the shaft.
+        orbit_inertia: raw.effects.orbit_inertia.clone().filter(|_| turns),
         ..Effects::default()
     };
     let context = Context {
@@ -361,6 +364,7 @@ fn check_loads(raw: &RawSeveral, problems: &mut Problems) {
         has_expansion: [true; 2],
         has_lubricant: false,
         turning_mass: None,
+        parts_courses: turns.then_some("[effects.unbalance]"),
     };
     on_shaft.check(context, problems);
 }

@@ -50,7 +50,7 @@ pub const ON_SHAFT: [&str; 4] = ["axial_force", "moment", "radial_force", "unbal
 /// Tables that a type file may have.
 const OF_TYPE: [&str; 5] = ["bearing", "materials", "contact", "inner", "outer"];
 /// Effects that act in every bearing.
-const IN_BEARINGS: [&str; 9] = [
+const IN_BEARINGS: [&str; 10] = [
     "ball_centrifugal",
     "cage_slip",
     "contact_damping",
@@ -58,6 +58,7 @@ const IN_BEARINGS: [&str; 9] = [
     "frame_rotation",
     "gravity",
     "gyroscopic_moment",
+    "orbit_inertia",
     "rayleigh_damping",
     "temperature",
 ];

@@ -127,3 +127,25 @@ fn an_unbalance_heavier_than_what_turns_is_refused() {
     }
     parse(&text, &[]).unwrap();
 }
+
+/// Wrong: balls that each have a course of their own, or one that turns, would have the inertia of another.
+#[test]
+fn the_inertia_of_orbits_is_refused_where_balls_do_not_follow_each_other() {
+    let text = with_effects("[effects.orbit_inertia]");
+    parse(&text, &[]).unwrap();
+    let unbalance = "effects.unbalance={ mass = \"10 g\", eccentricity = \"1 um\" }";
+    let waves = "profiles.waviness=[{ ring = \"outer\", order = 3, amplitude = \"1 um\" }]";
+    let sizes = "bearing.ball_diameters={ spread = \"1 um\" }";
+    for (set, key) in [
+        (unbalance, "[effects.unbalance]"),
+        (waves, "[[profiles.*]]"),
+        (sizes, "[bearing.ball_diameters]"),
+    ] {
+        let expected = format!(
+            "[effects.orbit_inertia] takes balls to follow each other on one course, but with {key} each has its own; \
+             remove one of both"
+        );
+        let message = message_of(&text, &[set]);
+        assert!(message.contains(&expected), "{message}");
+    }
+}
