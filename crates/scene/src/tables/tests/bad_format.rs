@@ -38,7 +38,7 @@ const FORMAT: [Case; 36] = [
         "[effects.tides]",
         &["unknown key \"tides\" in [effects]; valid keys \
              are \"axial_force\", \"radial_force\", \"moment\", \"gravity\", \"ball_centrifugal\", \
-             \"gyroscopic_moment\", \"cage_slip\", \"frame_rotation\", \"contact_damping\", \
+             \"gyroscopic_moment\", \"orbit_inertia\", \"cage_slip\", \"frame_rotation\", \"contact_damping\", \
          \"rayleigh_damping\""],
     ),
     (

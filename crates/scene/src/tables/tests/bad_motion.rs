@@ -480,7 +480,8 @@ fn effects_without_anything_to_do_are_refused() {
         (
             replace_line(&constant, "[effects.ball_centrifugal]", ""),
             "[speed] does nothing in a scene at rest without [life], [heat], [effects.ball_centrifugal], \
-             [effects.frame_rotation], [effects.gyroscopic_moment], [effects.traction] or [effects.unbalance]; add one"
+             [effects.frame_rotation], [effects.gyroscopic_moment], [effects.orbit_inertia], [effects.traction] or \
+             [effects.unbalance]; add one"
                 .to_string(),
         ),
         (

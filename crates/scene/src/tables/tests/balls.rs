@@ -29,7 +29,7 @@ fn free_balls_with_any_law_are_a_scene() {
     ] {
         let scene = parse(&free(law, ""), &[]).unwrap_or_else(|e| panic!("{law}: {e}"));
         assert_eq!(scene.balls, BallMotion::Free);
-        assert_eq!(scene.contact.ball, BallElasticity::HalfSpace);
+        assert_eq!(scene.contact.ball, BallElasticity::Sphere);
     }
     assert_eq!(parse(DYNAMIC, &[]).unwrap().balls, BallMotion::Kinematic);
 }

@@ -135,7 +135,7 @@ fn the_inertia_of_orbits_is_refused_where_balls_do_not_follow_each_other() {
     parse(&text, &[]).unwrap();
     let unbalance = "effects.unbalance={ mass = \"10 g\", eccentricity = \"1 um\" }";
     let waves = "profiles.waviness=[{ ring = \"outer\", order = 3, amplitude = \"1 um\" }]";
-    let sizes = "bearing.ball_diameters={ spread = \"1 um\" }";
+    let sizes = "bearing.ball_diameters={ spread = \"1 um\", seed = 1 }";
     for (set, key) in [
         (unbalance, "[effects.unbalance]"),
         (waves, "[[profiles.*]]"),
