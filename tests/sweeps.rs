@@ -395,6 +395,10 @@ fn a_sweep_stops_at_a_signal_and_names_the_points_that_are_left() {
         POINTS - 1
     );
     assert!(resumed.stderr.contains(&rest), "{}", resumed.stderr);
+    // A point is no instant.
+    let told = dir.raceway(&["info", "out"]).stdout;
+    let expected = format!("steps      {solved} from 0 to {}, ", solved - 1);
+    assert!(told.contains(&expected) && !told.contains("t = "), "{told}");
     let refused = dir.raceway(&["life", "out"]);
     assert_eq!(refused.code, Some(2));
     let expected = "the points left are computed by the same command with --points and another --out";
