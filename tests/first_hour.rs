@@ -200,6 +200,11 @@ fn help_has_commands_and_keys_of_scenes() {
         said.starts_with("[bearing] ") && said.contains("contact_angle = \"40 deg\""),
         "{said}"
     );
+    // A word in the middle of a name, or behind a dot.
+    let said = done(&dir, "help scene gauge");
+    assert!(said.starts_with("[probes.gauge.g1] "), "{said}");
+    let said = done(&dir, "help scene harmonic");
+    assert!(said.contains("schedule.harmonic = { frequency = "), "{said}");
     assert!(done(&dir, "help mesh").contains("Usage: raceway mesh"));
     let cases = [
         (

@@ -205,6 +205,16 @@ fn the_price_list_shows_what_an_effect_changes() {
         "{}",
         outcome.stderr
     );
+    // There is no file of a study in which to leave a point out.
+    let outcome = dir.raceway(&[&["prices", "scene.toml", "--vary", "cheese=1"], &RIGID[..]].concat());
+    assert_eq!(outcome.code, Some(2));
+    assert!(
+        outcome
+            .stderr
+            .contains("is no valid scene; correct its values: --set \"cheese=1\": unknown key"),
+        "{}",
+        outcome.stderr
+    );
 }
 
 /// Wrong: a user would not see what the near field costs, or what it changes: the stress of a probe below a ball, and

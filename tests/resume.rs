@@ -424,13 +424,17 @@ fn missing_files_are_made_again_where_that_can_be() {
     );
 }
 
-/// Wrong: a packed step would be missed, or a run whose early steps are packed could not go on.
+/// Wrong: a packed step would be missed, or a run whose early steps are packed could not go on; a folder that is packed
+/// already would be left without a word why nothing was done.
 #[test]
 fn a_run_goes_on_beside_its_packs() {
     let dir = moved();
     copy(&dir, "whole", "cut");
     let packed = dir.raceway(&["pack", "cut", "--keep", "5", "--per-file", "10"]);
     assert_eq!(packed.code, Some(0), "{}", packed.stderr);
+    let again = dir.raceway(&["pack", "cut", "--keep", "5"]).stdout;
+    let why = "0 steps packed, 2 packs in cut; 16 steps are in packs, the newest 5 stay files of their own (--keep)";
+    assert!(again.contains(why), "{again}");
     refused(
         &dir,
         &["cut", "--step", "3"],

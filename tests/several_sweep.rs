@@ -46,13 +46,26 @@ fn points_of_a_list_have_the_same_bits_on_any_number_of_threads() {
 }
 
 /// Wrong: jobs that share a sweep of a list would solve other points than the whole sweep has, or number them
-/// otherwise.
+/// otherwise; `resume` would send a user off to solve all of them again.
 #[test]
 fn points_of_a_list_can_be_solved_apart() {
     let dir = swept();
     succeeds(&dir, &["run", "pair.toml", "--out", "whole"]);
     succeeds(&dir, &["run", "pair.toml", "--out", "part", "--points", "7-9"]);
     assert_eq!(dir.text("part/bearings.csv").lines().count(), 1 + 3 * 2);
+    let rest = |out: &str, expected: &str| {
+        let refused = dir.raceway(&["resume", out]);
+        assert_eq!(refused.code, Some(2));
+        assert!(refused.stderr.contains(expected), "{}", refused.stderr);
+    };
+    rest(
+        "whole",
+        "can be resumed; its points up to the last, 10, are there",
+    );
+    rest(
+        "part",
+        "its points up to 9 are there, and the same command with --points 10-10 and another --out",
+    );
     for bearing in ["front", "rear"] {
         let table = |out: &str| Table::read(&dir, &format!("{out}/{bearing}/balls.csv"));
         let [whole, part] = [table("whole"), table("part")];

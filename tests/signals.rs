@@ -25,7 +25,8 @@ fn ran(analysis: &str) -> Dir {
 }
 
 /// Wrong: a tachometer would not show the angle of its ring, or a spall's line would be smeared over the speeds of a
-/// run-up: over orders it stands at the balls that pass per turn of the shaft, 18 (1 - 0.43313), and stands out.
+/// run-up, over the frequency without a word: over orders it stands at the balls that pass per turn of the shaft,
+/// 18 (1 - 0.43313), and stands out.
 #[test]
 fn a_spall_under_a_rising_speed_is_a_line_over_orders() {
     let dir = ran(RUN_UP);
@@ -62,6 +63,18 @@ fn a_spall_under_a_rising_speed_is_a_line_over_orders() {
     assert!(
         dir.text("out/figures/spectrum_z_acceleration_orders.svg")
             .contains("BPFO")
+    );
+    // Over the frequency the lines named are those of a mean speed that the run-up passes in a moment.
+    let smeared = dir.raceway(&both);
+    let warning = "warning: the inner ring turns at 1206 to 3594 rpm in this time, so lines smear";
+    assert!(smeared.stderr.contains(warning), "{}", smeared.stderr);
+    assert!(!outcome.stderr.contains("smear"), "{}", outcome.stderr);
+    let refused = dir.raceway(&[&both[..], &["--upto", "nan"]].concat());
+    assert_eq!(refused.code, Some(2));
+    assert!(
+        refused.stderr.contains("--upto is NaN; expected more than 0"),
+        "{}",
+        refused.stderr
     );
     // Steps at the highest speed show orders up to half their number a turn: 60 turns a second, 50 000 steps.
     assert!(*orders.last().unwrap() < 0.5 * 50_000.0 / 60.0 + 1.0);

@@ -247,7 +247,7 @@ fn spectra_refuse_what_they_cannot_show() {
     );
     refused(
         &["out", "--probe", "x_m", "--envelope", "1e3..1e6"],
-        "the steps of the run show 25000.0 Hz at most",
+        "the steps of the run show 25000 Hz at most",
     );
     refused(
         &["out", "--probe", "tilt_x_rad", "--acceleration"],

@@ -388,6 +388,17 @@ fn a_sweep_stops_at_a_signal_and_names_the_points_that_are_left() {
     assert_eq!(resumed.code, Some(2));
     let expected = "out holds results of a [sweep] scene; only a run over time";
     assert!(resumed.stderr.contains(expected), "{}", resumed.stderr);
+    let rest = format!(
+        "can be resumed; its points up to {} are there, and the same command with --points {solved}-{} and another \
+         --out computes the others",
+        solved - 1,
+        POINTS - 1
+    );
+    assert!(resumed.stderr.contains(&rest), "{}", resumed.stderr);
+    // A point is no instant.
+    let told = dir.raceway(&["info", "out"]).stdout;
+    let expected = format!("steps      {solved} from 0 to {}, ", solved - 1);
+    assert!(told.contains(&expected) && !told.contains("t = "), "{told}");
     let refused = dir.raceway(&["life", "out"]);
     assert_eq!(refused.code, Some(2));
     let expected = "the points left are computed by the same command with --points and another --out";

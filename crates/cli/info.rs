@@ -26,6 +26,7 @@ use study::STUDY_FILE;
 use study::prices::PRICES_FILE;
 
 use crate::export::TIMES;
+use crate::stored::OverTime;
 
 /// How closely the steps of a folder are looked at.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -249,10 +250,13 @@ pub fn inspect(dir: &Path, depth: Inspection) -> Result<Inspected, Failure> {
             Err(error) => damaged.push(error.to_string()),
         }
     }
+    let mut over_time = true;
     if let Some((newest, _)) = sound.last() {
-        about(&describe(&dir.join(step_file_name(*newest)))?);
+        let found = describe(&dir.join(step_file_name(*newest)))?;
+        over_time = has_times(&found);
+        about(&found);
     }
-    line_of_steps(&sound, steps.len(), bytes);
+    line_of_steps(&sound, steps.len(), bytes, over_time);
     let reduction = dir.join(REDUCTION_FILE);
     if reduction.exists() {
         match read_table(&reduction, run.as_deref()) {
@@ -281,21 +285,36 @@ pub fn inspect(dir: &Path, depth: Inspection) -> Result<Inspected, Failure> {
     })
 }
 
-/// How many steps there are, and of which times; `sound` are numbers and times, s.
-fn line_of_steps(sound: &[(u64, f64)], n_steps: usize, bytes: u64) {
+/// Whether the time of a step is one: the points of a sweep and the shapes of modes have their number there.
+fn has_times(found: &FileDescription) -> bool {
+    let of_scene = |text: &String| scene::read_tables::<serde_json::Value>(text, Path::new("scene"));
+    match found.scene.as_ref().map(of_scene) {
+        Some(Ok(tables)) => OverTime::TABLES.iter().any(|name| tables.get(name).is_some()),
+        _ => true,
+    }
+}
+
+/// How many steps there are, and of which times, where they have one; `sound` are numbers and times, s.
+fn line_of_steps(sound: &[(u64, f64)], n_steps: usize, bytes: u64, over_time: bool) {
     match (sound, n_steps) {
         ([], 0) => line("steps", "none committed yet"),
         ([], n) => line("steps", &format!("{n}, all damaged")),
         ([first, ..], n) => {
             let last = sound[sound.len() - 1];
+            let times = match over_time {
+                true => format!(
+                    ", t = {:?} s to {:?} s",
+                    without_round_off(first.1),
+                    without_round_off(last.1)
+                ),
+                false => String::new(),
+            };
             line(
                 "steps",
                 &format!(
-                    "{n} from {} to {}, t = {:?} s to {:?} s, {} in all",
+                    "{n} from {} to {}{times}, {} in all",
                     first.0,
                     last.0,
-                    without_round_off(first.1),
-                    without_round_off(last.1),
                     size(bytes)
                 ),
             );
@@ -385,7 +404,11 @@ fn file(path: &Path) -> Result<(), Failure> {
     let found = describe(path)?;
     line("file", &format!("{}, {}", path.display(), size(found.bytes)));
     if let Some((step, time)) = found.step {
-        line("step", &format!("{step}, t = {time:?} s"));
+        let time = match has_times(&found) {
+            true => format!(", t = {time:?} s"),
+            false => String::new(),
+        };
+        line("step", &format!("{step}{time}"));
         if !has_state(path)? {
             line("restart", "no state; a run goes on from an earlier step");
         }

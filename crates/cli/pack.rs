@@ -1,9 +1,9 @@
 //! `raceway pack`: finished steps into larger files, and back.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use anyhow::anyhow;
-use checkpoint::{FolderLock, pack_steps, packs, unpack_steps};
+use checkpoint::{FolderLock, committed_steps, pack_steps, packs, unpack_steps};
 use clap::Args;
 use comm::print::{self, counted};
 use results::failure::Failure;
@@ -49,11 +49,39 @@ pub fn pack(request: &Pack) -> Result<(), Failure> {
         return Ok(());
     }
     let n = pack_steps(&lock, request.keep as usize, request.per_file as usize)?;
+    let packs = packs(dir)?;
     print::line(format_args!(
-        "{} packed, {} in {}; run.vtkhdf shows them, run.hdf.series only the files of one step",
+        "{} packed, {} in {}; {}",
         counted(n, "step"),
-        counted(packs(dir)?.len(), "pack"),
-        dir.display()
+        counted(packs.len(), "pack"),
+        dir.display(),
+        match n {
+            0 => why_none(
+                dir,
+                packs.iter().map(|(_, steps)| steps.len()).sum(),
+                request.keep
+            )?,
+            _ => "run.vtkhdf shows them, run.hdf.series only the files of one step".to_string(),
+        }
     ));
     Ok(())
+}
+
+/// Why no step was packed, of a folder with so many in packs.
+fn why_none(dir: &Path, n_packed: usize, keep: u32) -> Result<String, Failure> {
+    let own = committed_steps(dir)?.len();
+    let before = match n_packed {
+        0 => String::new(),
+        1 => "1 step is in a pack, ".to_string(),
+        n => format!("{n} steps are in packs, "),
+    };
+    let why = match own > keep as usize {
+        true => ": the first of them holds the newest restart state",
+        false => " (--keep)",
+    };
+    let stay = match own {
+        1 => "the newest stays a file of its own".to_string(),
+        n => format!("the newest {n} stay files of their own"),
+    };
+    Ok(format!("{before}{stay}{why}"))
 }

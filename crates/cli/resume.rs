@@ -123,7 +123,7 @@ fn read(request: &ResumeRequest, step: u64) -> Result<Read, Failure> {
         ));
     }
     let scene = scene_of(request, &record, &about)?;
-    let course = OverTime::of(&scene.analysis, dir)?;
+    let course = OverTime::of(&scene.analysis, dir, step)?;
     require_named_files(&scene, &about)?;
     course.require_step(step, &format!("{step}, t = {} s", record.time))?;
     Ok(Read {
@@ -276,7 +276,8 @@ fn require_same_file(path: &Path, overrides: &[String], (stored, dir): (&str, &P
     }
     // Each step of a sweep holds the scene of its point.
     if !changes.iter().any(|change| change.is_below(&OverTime::TABLES)) {
-        OverTime::of(&now.analysis, dir)?;
+        let newest = checkpoint::all_steps(dir)?.last().copied().unwrap_or(0);
+        OverTime::of(&now.analysis, dir, newest)?;
     }
     Err(anyhow!(
         "the scene file {} has changed since the run: {}; put it back, or go on with the scene of the run: \

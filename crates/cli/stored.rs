@@ -34,16 +34,35 @@ impl OverTime {
     /// The tables of scenes that say how long they go.
     pub const TABLES: [&str; 2] = ["dynamic", "quasi_static"];
 
-    /// That of an analysis, whose results are in a folder.
-    pub fn of(analysis: &Analysis, dir: &Path) -> Result<OverTime, Failure> {
+    /// That of an analysis, whose results are in a folder with the newest step `newest`.
+    pub fn of(analysis: &Analysis, dir: &Path, newest: u64) -> Result<OverTime, Failure> {
         let kind = match analysis {
             Analysis::Dynamic(dynamic) => return Ok(OverTime::Motion(*dynamic)),
             Analysis::QuasiStatic(settings) => return Ok(OverTime::Equilibria(*settings)),
             Analysis::Static => "[static]",
-            Analysis::Sweep(_) => "[sweep]",
+            Analysis::Sweep(sweep) => return Err(OverTime::rest_of_sweep(sweep.points.len(), dir, newest)),
             Analysis::Modes(_) => "[modes]",
         };
         Err(OverTime::none_of(kind, dir))
+    }
+
+    /// Why a sweep of so many points is not gone on with, and how to have those after the newest.
+    fn rest_of_sweep(n_points: usize, dir: &Path, newest: u64) -> Failure {
+        let last = n_points as u64 - 1;
+        let rest = match newest < last {
+            true => format!(
+                "its points up to {newest} are there, and the same command with --points {}-{last} and another --out \
+                 computes the others",
+                newest + 1
+            ),
+            false => format!("its points up to the last, {last}, are there"),
+        };
+        anyhow!(
+            "{} holds results of a [sweep] scene; only a run over time, a scene with [dynamic] or [quasi_static], can \
+             be resumed; {rest}",
+            dir.display()
+        )
+        .into()
     }
 
     /// Why a step that does not say where its scene is cannot be gone on from: steps of modes do not.

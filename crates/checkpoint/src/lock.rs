@@ -6,7 +6,7 @@
 //! files of the same name.
 
 use std::fs::{File, OpenOptions, TryLockError};
-use std::io::{Read, Seek, SeekFrom, Write};
+use std::io::{ErrorKind, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
 use crate::error::CheckpointError;
@@ -65,16 +65,23 @@ pub fn open_lock(path: &Path) -> Result<File, CheckpointError> {
     require_plain(path)?;
     let mut options = OpenOptions::new();
     let opened = options.read(true).write(true).create(true).truncate(false);
-    opened
-        .open(path)
-        .map_err(CheckpointError::io("open the lock", path))
+    opened.open(path).map_err(|error| {
+        let source = match error.kind() {
+            ErrorKind::PermissionDenied | ErrorKind::ReadOnlyFilesystem => {
+                let advice = "the command writes into this folder; copy it to where you may write";
+                std::io::Error::new(error.kind(), format!("{error}; {advice}"))
+            }
+            _ => error,
+        };
+        CheckpointError::io("open the lock", path)(source)
+    })
 }
 
 /// Fails if the lock is a link or a pipe: what is written into it would go elsewhere.
 fn require_plain(path: &Path) -> Result<(), CheckpointError> {
     if path.symlink_metadata().is_ok_and(|data| !data.is_file()) {
         let what = "it is no plain file; remove it if no run is writing here";
-        let source = std::io::Error::new(std::io::ErrorKind::InvalidInput, what);
+        let source = std::io::Error::new(ErrorKind::InvalidInput, what);
         return Err(CheckpointError::io("open the lock", path)(source));
     }
     Ok(())

@@ -14,7 +14,7 @@ use std::path::{Path, PathBuf};
 use crate::atomic::{self, Format};
 use crate::dataset::{create_group, create_vtkhdf};
 use crate::error::CheckpointError;
-use crate::folder::{committed_steps, remove_if_present, require_run, run_of};
+use crate::folder::{committed_steps, remove_if_present, remove_leftovers, require_run, run_of};
 use crate::index::rebuild_index;
 use crate::lock::FolderLock;
 use crate::names::{group_name, pack_name, step_file_name};
@@ -66,6 +66,8 @@ impl WholeStep {
 /// writes them must have ended: the lock says so.
 pub fn pack_steps(lock: &FolderLock, keep: usize, per_file: usize) -> Result<usize, CheckpointError> {
     let dir = lock.dir();
+    // What a killed command has left is as large as the steps, and hidden.
+    remove_leftovers(dir)?;
     let mut steps = committed_steps(dir)?;
     let most = steps.len().saturating_sub(keep.max(1));
     steps.truncate(most.min(newest_state(dir, &steps).unwrap_or(most)));
@@ -145,6 +147,7 @@ fn write_pack(dir: &Path, steps: &[u64]) -> Result<PathBuf, CheckpointError> {
 /// Makes a file of every packed step again, of the same bytes as before, and removes the packs. Returns how many.
 pub fn unpack_steps(lock: &FolderLock) -> Result<usize, CheckpointError> {
     let dir = lock.dir();
+    remove_leftovers(dir)?;
     let mut n_steps = 0;
     for (path, steps) in packs(dir)? {
         verify_seal(&path)?;

@@ -23,7 +23,7 @@ use results::whole::{make_folder, require_own_picture, write, write_picture};
 use scene::{Analysis, MeshFiles, Scene};
 
 use fourier::LineSpectrum;
-use lines::{Line, lines};
+use lines::{Line, lines, smear};
 use signal::Signal;
 
 pub use spall_length::{SpallLengthCommand, spall_length};
@@ -139,6 +139,11 @@ pub fn spectrum(request: &SpectrumCommand) -> Result<(), Failure> {
     let signal = request.signal()?;
     let mut marks = lines(dir, &scene, signal.span)?;
     let named = request.transform(&signal)?;
+    if request.orders.is_none()
+        && let Some(text) = smear(&scene, signal.span, &marks, named.spectrum.resolution)
+    {
+        print::note(format_args!("warning: {text}"));
+    }
     marks.iter_mut().for_each(|line| {
         line.frequency /= named.over.hertz;
         line.sidebands /= named.over.hertz;
@@ -267,10 +272,10 @@ impl SpectrumCommand {
     fn samples(&self, signal: &Signal) -> anyhow::Result<Samples> {
         let mut values = signal.values.clone();
         if let Some(Band(band)) = self.envelope {
-            let highest = 0.5 * signal.rate;
+            let highest = (0.5e3 * signal.rate).round() / 1e3;
             ensure!(
                 band[1] <= highest,
-                "--envelope goes up to {} Hz; the steps of the run show {highest:.1} Hz at most",
+                "--envelope goes up to {} Hz; the steps of the run show {highest} Hz at most",
                 band[1]
             );
             values = fourier::envelope(&values, signal.rate, band);
@@ -323,6 +328,9 @@ impl Samples {
 fn draw(named: &Titled, marks: &[Line], upto: Option<f64>) -> anyhow::Result<Figure> {
     let LineSpectrum { resolution, values } = &named.spectrum;
     let highest = marks.iter().map(|line| line.frequency).fold(0.0, f64::max);
+    if let Some(upto) = upto {
+        ensure!(upto > 0.0, "--upto is {upto}; expected more than 0");
+    }
     let end = upto.unwrap_or(10.0 * highest).min(named.spectrum.highest());
     ensure!(
         end > 2.0 * resolution,

@@ -107,6 +107,35 @@ pub fn lines(dir: &Path, scene: &Scene, (from, to): (f64, f64)) -> anyhow::Resul
     Ok(found)
 }
 
+/// Instants at which the speed of a ring is looked at.
+const LOOKS: u32 = 200;
+
+/// A sentence where a ring changes its speed so much, from `from` to `to`, s, that its highest line is drawn out over
+/// more than a peak of a spectrum over the frequency has; `resolution` is that of the spectrum, Hz.
+pub fn smear(scene: &Scene, (from, to): (f64, f64), marks: &[Line], resolution: f64) -> Option<String> {
+    let highest = marks.iter().map(|line| line.frequency).fold(0.0, f64::max);
+    let step = (to - from) / f64::from(LOOKS);
+    Side::BOTH.into_iter().find_map(|side| {
+        let speed = scene.speed.as_ref()?.of(side);
+        let angle = |i: u32| speed.angle(from + f64::from(i) * step);
+        let speeds = (0..LOOKS).map(|i| (angle(i + 1) - angle(i)) / (TAU * step));
+        let [low, high] = speeds.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| {
+            [low.min(x), high.max(x)]
+        });
+        let mean = (angle(LOOKS) - angle(0)) / (TAU * (to - from));
+        let width = highest * (high - low) / mean.abs().max(f64::MIN_POSITIVE);
+        (width > 2.0 * resolution).then(|| {
+            format!(
+                "the {} ring turns at {:.0} to {:.0} rpm in this time, so lines smear, and those named are of the mean \
+                 speed; take --orders with a tachometer of the scene, or a part of the run by --from and --to",
+                side.name(),
+                60.0 * low,
+                60.0 * high
+            )
+        })
+    })
+}
+
 /// The lines of a bearing whose rings, cage and balls turn at these speeds, Hz.
 fn lines_of(scene: &Scene, (inner, outer): (f64, f64), cage: f64, spin: f64) -> [Line; 5] {
     let n = scene.bearing.balls as f64;

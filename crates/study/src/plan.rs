@@ -151,20 +151,21 @@ impl Plan {
             Meshes::Build => MeshFiles::MayBeMissing,
         };
         for point in &self.points {
-            Scene::parse(
-                &self.scene_text,
-                &self.scene,
-                &arguments(&point.set, out),
-                files,
-            )
-            .with_context(|| {
-                format!(
-                    "point {} of {} ({}) is no valid scene; correct its values or name the combination in exclude",
-                    point.index,
-                    self.path.display(),
-                    self.name(point)
-                )
-            })?;
+            Scene::parse(&self.scene_text, &self.scene, &arguments(&point.set, out), files).with_context(
+                || {
+                    format!(
+                        "point {} of {} ({}) is no valid scene; correct its values{}",
+                        point.index,
+                        self.path.display(),
+                        self.name(point),
+                        // Prices have a scene, and no file of a study.
+                        match self.path == self.scene {
+                            true => "",
+                            false => " or name the combination in exclude",
+                        }
+                    )
+                },
+            )?;
         }
         Ok(())
     }

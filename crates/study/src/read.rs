@@ -19,7 +19,7 @@ const SAME: f64 = 1e-9;
 pub struct Reading {
     /// The number, unit of its quantity.
     pub value: f64,
-    /// Time and value of every row; empty unless histories are compared.
+    /// Time and value of every row, in the order of the table; empty unless histories are compared.
     pub history: Vec<[f64; 2]>,
 }
 
@@ -36,7 +36,7 @@ pub fn read(source: &Source, dir: &Path) -> anyhow::Result<Reading> {
             rows,
             take,
         } => {
-            let history = table_rows(dir, file, column, rows)?;
+            let history = table_rows(dir, file, column, rows, *take)?;
             Reading {
                 value: reduce(&history, *take),
                 history: if *take == Take::History {
@@ -90,12 +90,14 @@ fn deepest(json: &Value, pointer: &str) -> String {
     }
 }
 
-/// Time and value of the rows that match; the number of the row stands for the time where there is none.
+/// Time and value of the rows that match; the number of the row stands for the time where there is none. Refuses what
+/// is not one number: the final one of several rows at the last time.
 fn table_rows(
     dir: &Path,
     file: &str,
     column: &str,
     wanted: &BTreeMap<String, Cell>,
+    take: Take,
 ) -> anyhow::Result<Vec<[f64; 2]>> {
     let path = dir.join(file);
     let table = read_rows(&path)?;
@@ -113,7 +115,7 @@ fn table_rows(
         .iter()
         .map(|(name, cell)| Ok((index(name)?, cell)))
         .collect::<anyhow::Result<Vec<_>>>()?;
-    let mut rows = Vec::new();
+    let (mut rows, mut cells) = (Vec::new(), Vec::new());
     for (i, row) in all.iter().enumerate() {
         if !wanted.iter().all(|(c, cell)| matches_cell(&row[*c], cell)) {
             continue;
@@ -124,11 +126,40 @@ fn table_rows(
                 .with_context(|| format!("{file}, row {}: {:?} is no number", i + 1, &row[c]))
         };
         rows.push([time.map_or(Ok(i as f64), number)?, number(value)?]);
+        cells.push(row);
     }
-    if rows.is_empty() {
+    let Some(last) = instants(&rows).last().map(|last| last.len()) else {
         bail!("{file} has no row that matches where");
+    };
+    if take == Take::Final && last > 1 {
+        let of_last = &cells[cells.len() - last..];
+        bail!(
+            "{file} has {last} rows at the last time, and take = \"final\" is one of them; say which{}, or take \
+             another number of all, such as \"max\"",
+            example_of_where(&header, of_last, value)
+        );
     }
     Ok(rows)
+}
+
+/// How `where` names one of some rows of a time, by the first column but that of the value that tells them apart.
+fn example_of_where(header: &[String], rows: &[&csv::StringRecord], value: usize) -> String {
+    let [one, .., other] = rows else {
+        return String::new();
+    };
+    let apart = (0..header.len()).find(|&c| c != value && one[c] != other[c]);
+    apart.map_or_else(String::new, |c| {
+        let cell = match one[c].parse::<f64>() {
+            Ok(_) => one[c].to_string(),
+            Err(_) => format!("{:?}", &one[c]),
+        };
+        format!(" by where, such as where = {{ {} = {cell} }}", header[c])
+    })
+}
+
+/// Rows of a table by the times that they have: those next to each other of the same time.
+fn instants(rows: &[[f64; 2]]) -> impl Iterator<Item = &[[f64; 2]]> {
+    rows.chunk_by(|a, b| a[0] == b[0])
 }
 
 fn matches_cell(text: &str, wanted: &Cell) -> bool {
@@ -160,18 +191,28 @@ fn reduce(rows: &[[f64; 2]], take: Take) -> f64 {
     }
 }
 
-/// RMS of the difference of two histories at the times that both have. At least two such times are needed.
+/// RMS of the difference of two histories at the times that both have, row by row where a time has several. At least
+/// two such rows are needed.
 pub fn history_difference(a: &[[f64; 2]], b: &[[f64; 2]]) -> anyhow::Result<f64> {
     let span = b.last().map_or(0.0, |l| l[0].abs());
-    let (mut j, mut n, mut sum) = (0, 0usize, 0.0);
-    for [time, value] in a {
-        while j < b.len() && b[j][0] < time - SAME * span {
-            j += 1;
+    let mut others = instants(b).peekable();
+    let (mut n, mut sum) = (0usize, 0.0);
+    for rows in instants(a) {
+        let time = rows[0][0];
+        while others.next_if(|of| of[0][0] < time - SAME * span).is_some() {}
+        let Some(of) = others.next_if(|of| (of[0][0] - time).abs() <= SAME * span) else {
+            continue;
+        };
+        if of.len() != rows.len() {
+            bail!(
+                "its history has {} rows at {time} s and that of the reference {}; name one by where",
+                rows.len(),
+                of.len()
+            );
         }
-        if j < b.len() && (b[j][0] - time).abs() <= SAME * span {
-            sum += (value - b[j][1]) * (value - b[j][1]);
-            n += 1;
-        }
+        let square = |(x, y): (&[f64; 2], &[f64; 2])| (x[1] - y[1]) * (x[1] - y[1]);
+        sum += rows.iter().zip(of).map(square).sum::<f64>();
+        n += rows.len();
     }
     if n < 2 {
         bail!(
@@ -213,5 +254,29 @@ mod tests {
         );
         let error = history_difference(&coarse, &[[0.15, 1.0], [0.35, 1.0]]).unwrap_err();
         assert!(error.to_string().contains("have 0 times in common"), "{error}");
+    }
+
+    /// Wrong: a history of all rows of an instant would be compared with the first of the reference, and say 50 % where
+    /// the rows agree to the last bit.
+    #[test]
+    fn histories_of_several_rows_an_instant_are_compared_row_by_row() {
+        let coarse = [[0.0, 1.0], [0.0, 5.0], [0.2, 2.0], [0.2, 6.0]];
+        let fine = [
+            [0.0, 1.0],
+            [0.0, 5.0],
+            [0.1, 9.0],
+            [0.1, 9.0],
+            [0.2, 2.0],
+            [0.2, 6.5],
+        ];
+        assert_eq!(history_difference(&coarse, &coarse).unwrap(), 0.0);
+        assert_eq!(history_difference(&coarse, &fine).unwrap(), 0.25);
+        let error = history_difference(&coarse, &[[0.0, 1.0], [0.2, 2.0]]).unwrap_err();
+        assert!(
+            error
+                .to_string()
+                .contains("2 rows at 0 s and that of the reference 1"),
+            "{error}"
+        );
     }
 }

@@ -369,3 +369,22 @@ fn steps_say_where_their_run_came_from() {
             .contains("without NUL")
     );
 }
+
+/// Wrong: a user of an archive that nobody may write to would read of a lock, and not what to do.
+#[test]
+fn a_folder_that_may_not_be_written_to_says_what_to_do() {
+    // Nobody makes files here, the administrator neither.
+    let sealed = std::path::Path::new("/sys/kernel");
+    if !sealed.is_dir() {
+        return;
+    }
+    let said = checkpoint::FolderLock::acquire(sealed).unwrap_err().to_string();
+    assert!(
+        said.starts_with("cannot open the lock /sys/kernel/.raceway.lock: "),
+        "{said}"
+    );
+    assert!(
+        said.ends_with("writes into this folder; copy it to where you may write"),
+        "{said}"
+    );
+}

@@ -137,6 +137,22 @@ fn an_interrupted_packing_can_be_finished() {
     assert!(files(dir.path()) == before);
 }
 
+/// Wrong: the half-written pack of a command that was killed, as large as the results and hidden, would fill the disk
+/// for good, one more for each kill.
+#[test]
+fn what_a_killed_packing_has_left_is_removed() {
+    let dir = tempfile::tempdir().unwrap();
+    run(dir.path(), Storage::default());
+    let before = files(dir.path());
+    let half = dir.path().join(".pack_000003_000005.hdf.tmp");
+    fs::write(&half, "half").unwrap();
+    assert_eq!(pack_steps(&lock(dir.path()), 2, 100).unwrap(), 6);
+    assert!(!half.exists());
+    fs::write(&half, "half").unwrap();
+    assert_eq!(unpack_steps(&lock(dir.path())).unwrap(), 6);
+    assert!(files(dir.path()) == before);
+}
+
 /// Wrong: damage would be packed or unpacked as if it were a result, or take whole steps with it.
 #[test]
 fn damage_stops_packing_and_unpacking() {
