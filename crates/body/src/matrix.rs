@@ -215,11 +215,7 @@ fn read_matrix(
         match numbers(row).as_deref() {
             Some(&[i, j, value]) if inside(i) && inside(j) => {
                 let (i, j) = (i as usize - 1, j as usize - 1);
-                let value = unit * unit_of(i) * unit_of(j) * value;
-                triplets.add_triplet(i, j, value);
-                if is_symmetric && i != j {
-                    triplets.add_triplet(j, i, value);
-                }
+                triplets.add_triplet(i, j, unit * unit_of(i) * unit_of(j) * value);
             }
             _ => {
                 let problem =
@@ -236,9 +232,42 @@ fn read_matrix(
             format!("{count} entries; the sizes say {entries}, so the file is not whole"),
         ));
     }
-    let matrix: CsMat<f64> = triplets.to_csr();
+    let listed: CsMat<f64> = triplets.to_csr();
+    let matrix = match is_symmetric {
+        true => both_halves((path, what), &listed, nodes)?,
+        false => listed,
+    };
     require_sound((path, what), &matrix, nodes)?;
     Ok(matrix)
+}
+
+/// The whole of a matrix of which a file lists one half.
+fn both_halves(
+    (path, what): (&Path, &str),
+    listed: &CsMat<f64>,
+    nodes: &NumberedNodes<'_>,
+) -> Result<CsMat<f64>, SurroundingError> {
+    let mut whole = TriMat::new(listed.shape());
+    for (&value, (i, j)) in listed.iter() {
+        whole.add_triplet(i, j, value);
+        if i == j {
+            continue;
+        }
+        if listed.get(j, i).is_some() {
+            let [(node, axis), (other, along)] =
+                [i, j].map(|dof| (nodes.tags[dof / 3], direction(&nodes.is_rotation, dof)));
+            let problem = format!(
+                "the {what} of node {node} {axis} with node {other} {along} stands here in both halves, row {} column \
+                 {} and the other way round; a file that its first line calls symmetric has one half: write general \
+                 there, or take one half out",
+                i + 1,
+                j + 1
+            );
+            return Err(wrong(path, 0, problem));
+        }
+        whole.add_triplet(j, i, value);
+    }
+    Ok(whole.to_csr())
 }
 
 /// Whether a Matrix Market file holds one half of its matrix, by its first line in lower case.

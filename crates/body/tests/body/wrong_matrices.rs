@@ -118,6 +118,49 @@ fn matrices_that_are_not_positive_are_refused_with_their_place() {
     assert_eq!(lumped, None);
 }
 
+/// Wrong: of a whole matrix in a file that says symmetric all that couples its dofs would count twice, and a mass or a
+/// condensed stiffness so made passes all other tests.
+#[test]
+fn a_symmetric_file_with_both_halves_is_refused() {
+    let (dir, files) = files();
+    for (name, what) in [("M.mtx", "mass"), ("K.mtx", "stiffness")] {
+        let path = dir.path().join(name);
+        let half = std::fs::read_to_string(&path).unwrap();
+        let lines = half.lines().filter(|line| !line.starts_with("% "));
+        let [head, sizes, entries @ ..] = &lines.collect::<Vec<_>>()[..] else {
+            panic!("{name} has no entries");
+        };
+        let mirrored = entries.iter().filter_map(|entry| {
+            let [i, j, value] = entry.split(' ').collect::<Vec<_>>()[..] else {
+                return None;
+            };
+            (i != j).then(|| format!("{j} {i} {value}"))
+        });
+        let both: Vec<String> = entries.iter().map(|e| e.to_string()).chain(mirrored).collect();
+        let n = sizes.split(' ').next().unwrap();
+        let whole = |head: &str| format!("{head}\n{n} {n} {}\n{}\n", both.len(), both.join("\n"));
+        std::fs::write(&path, whole(head)).unwrap();
+        let said = MatrixBody::read(&files).err().unwrap().to_string();
+        for part in [
+            format!("{name}: the {what} of node 101 x with node 10"),
+            "stands here in both halves, row 1 column ".to_string(),
+            "a file that its first line calls symmetric has one half: write general there, or take one half out"
+                .to_string(),
+        ] {
+            assert!(said.contains(&part), "{said}");
+        }
+        // Called general, the same text is the matrix of its half.
+        let read = |text: &str| {
+            std::fs::write(&path, text).unwrap();
+            MatrixBody::read(&files).unwrap()
+        };
+        let [general, of_half] =
+            [&whole(&head.replace("symmetric", "general")), &half].map(|text| read(text));
+        assert_eq!(general.stiffness, of_half.stiffness);
+        assert_eq!(general.mass, of_half.mass);
+    }
+}
+
 /// Wrong: one who has matrices would be told of meshes, groups and Gmsh.
 #[test]
 fn messages_on_matrices_speak_of_their_files() {
