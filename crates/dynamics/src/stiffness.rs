@@ -46,7 +46,7 @@ use crate::loading::LoadCase;
 use crate::model::{ContactMode, Model};
 use crate::solution::StaticSolution;
 use crate::statics::StaticSolver;
-use crate::system::{BodyId, ElasticPorts, LinkForces, System};
+use crate::system::{BodyId, ElasticPorts, LinkForces, LinkRows, System};
 
 /// Step of a contact angle in a difference quotient of loads, rad: their relative error is its square.
 const ANGLE_STEP: f64 = 1e-5;
@@ -171,7 +171,7 @@ impl Linearisation {
             ring_damping: laws.rings.map_or(0.0, |rings| rings.stiffness),
             n_balls: parts.balls.len(),
             ports: [None, None],
-            closing: damped.map_or(Vec::new(), |damped| closing(parts, &system, &damped)),
+            closing: damped.map_or(Vec::new(), |damped| closing(parts, &system, &x, &damped)),
             load_stiffness: parts.shaft.tilted.map_or([[0.0; N_SHAFT]; N_SHAFT], |loads| {
                 loads.stiffness(solution.displacements.shaft)
             }),
@@ -448,16 +448,25 @@ fn damped_contacts(parts: &BearingParts, x: &[f64], law: ContactDamping) -> Vec<
         .collect()
 }
 
-/// How damped contacts close, by site.
-fn closing(parts: &BearingParts, system: &System, contacts: &[DampedContact]) -> Vec<ClosingContact> {
-    let of_site = |((state, c), site): (&DampedContact, &Site)| {
-        let elastic = parts.elastic(site.side).map(BodyId::Elastic);
-        let ports = elastic.map(|body| system.unknowns(body).start + 2 * site.ball);
-        let carrier = parts.carrier(site.side).map(BodyId::Lumped);
-        let carrier = carrier.map(|body| (system.unknowns(body).start, site.carrier_rows()));
-        ClosingContact::new((state, *c), (N_SHAFT + 2 * site.ball, ports), carrier)
+/// How damped contacts close, by site: along their normals, as their lengths grow at `x`.
+fn closing(
+    parts: &BearingParts,
+    system: &System,
+    x: &[f64],
+    contacts: &[DampedContact],
+) -> Vec<ClosingContact> {
+    let growths = system.growths(CONTACTS, x);
+    let of_site = |(i, ((state, c), site)): (usize, (&DampedContact, &Site))| {
+        let (first, n) = (2 * (i % 2), state.normal.to_array());
+        let along = |rows: &LinkRows| n[0] * rows[first] + n[1] * rows[first + 1];
+        let growth = growths[i / 2]
+            .iter()
+            .map(|(unknown, rows)| (*unknown, along(rows)));
+        let ring = parts.elastic(site.side).map(BodyId::Elastic);
+        ClosingContact::new(growth.collect(), *c, ring.map(|body| system.unknowns(body)))
     };
-    contacts.iter().zip(&parts.contacts.sites).map(of_site).collect()
+    let contacts = contacts.iter().zip(&parts.contacts.sites);
+    contacts.enumerate().map(of_site).collect()
 }
 
 /// Where a stiffness is least.

@@ -1,8 +1,6 @@
 //! How damped contacts close, to first order.
 
-use contact::Meridian;
-
-use super::raceway_contact::SiteState;
+use std::ops::Range;
 
 /// How a contact closes, and its damping.
 #[derive(Clone, Debug, PartialEq)]
@@ -16,22 +14,14 @@ pub struct ClosingContact {
 }
 
 impl ClosingContact {
-    /// Of a ball and of what carries its ring, whose motions start at these unknowns; `ports` is the unknown of the
-    /// first of an elastic ring.
-    pub fn new(
-        (state, damping): (&SiteState, f64),
-        (ball, ports): (usize, Option<usize>),
-        carrier: Option<(usize, [Meridian; 5])>,
-    ) -> ClosingContact {
-        let n = state.normal.to_array();
-        let along = |first: usize, sign: f64| [0, 1].map(|i| (first + i, sign * n[i]));
-        let carried = carrier.into_iter().flat_map(|(first, motions)| {
-            let row = move |(j, motion): (usize, &Meridian)| (first + j, -state.normal.dot(*motion));
-            motions.iter().enumerate().map(row).collect::<Vec<_>>()
-        });
+    /// Of the growth of its approach with all unknowns that move it; `ports` are those of its elastic ring.
+    pub fn new(growth: Vec<(usize, f64)>, damping: f64, ports: Option<Range<usize>>) -> ClosingContact {
+        let is_port = |(unknown, _): &(usize, f64)| ports.as_ref().is_some_and(|p| p.contains(unknown));
+        let (of_ring, rows): (Vec<_>, Vec<_>) =
+            growth.into_iter().filter(|(_, g)| *g != 0.0).partition(is_port);
         ClosingContact {
-            rows: along(ball, 1.0).into_iter().chain(carried).collect(),
-            of_ring: ports.map_or(Vec::new(), |first| along(first, -1.0).to_vec()),
+            rows,
+            of_ring,
             damping,
         }
     }

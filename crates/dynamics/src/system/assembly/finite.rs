@@ -1,7 +1,7 @@
 //! Finite motions of links in a system: their coordinates, slopes and curvature.
 
 use super::super::finite::{CarriedCircle, FiniteCoordinates, FiniteMotion, FiniteRows};
-use super::super::interaction::{Link, LinkForces};
+use super::super::interaction::{Link, LinkForces, LinkRows};
 use super::super::lumped::Interval;
 use super::System;
 
@@ -52,6 +52,18 @@ impl System<'_> {
                 circle: finite.circle,
                 at: self.finite_coordinates(&finite, &end),
             })
+        };
+        self.interactions[family].links().iter().map(of).collect()
+    }
+
+    /// Unknowns that move the links of a family at `x`, by link, and the growth of its lengths with each.
+    pub fn growths(&self, family: usize, x: &[f64]) -> Vec<Vec<(usize, LinkRows)>> {
+        let (moves, end) = (self.moves(x), self.end(x));
+        let of = |link: &Link| {
+            let rows = |finite: CarriedCircle| finite.circle.rows(self.finite_coordinates(&finite, &end));
+            let mut moved = Vec::new();
+            self.moved_by(link, link.finite.map(|f| (f, rows(f))), &moves, &mut moved);
+            moved
         };
         self.interactions[family].links().iter().map(of).collect()
     }
