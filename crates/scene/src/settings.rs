@@ -51,6 +51,7 @@ pub fn effects_context(scene: &Scene) -> Context {
         has_lubricant: scene.lubricant.is_some(),
         turning_mass: scene.shaft.turning_mass(&scene.inner),
         parts_courses: scene.profiles.parts_courses(&scene.effects),
+        has_ball_centrifugal: scene.effects.ball_centrifugal.is_some(),
     }
 }
 

@@ -6,6 +6,9 @@
 //! derivative of [`course_slopes`]. A motion has this inertia of itself; the effect gives it the start at which it
 //! rests, with the velocities of `[dynamic.start.rolling]`.
 //!
+//! It needs the centrifugal force, which presses all balls on a raceway: the inertia of balls that hardly touch
+//! anything would move them without end.
+//!
 //! Balls must follow each other on one course that stands in space: surfaces, balls of several sizes and loads that
 //! turn with a ring are refused. In quasi-static runs the course is that of each instant: what its change adds is left
 //! out, as all inertia of a change is there.
@@ -22,8 +25,7 @@ use crate::error::DynamicsError;
 use crate::kinematics::{Kinematics, RingSpeeds, SlipRatios, course_slopes};
 use crate::model::{Effect, Model};
 
-const EXAMPLE: &str =
-    "[effects.orbit_inertia]         # needs [speed]; of equilibria, motion has it always\n";
+const EXAMPLE: &str = "[effects.orbit_inertia]         # needs [effects.ball_centrifugal]; for equilibria\n";
 
 /// The table of a scene: it has no keys.
 #[derive(Clone, Debug, Deserialize, PartialEq)]
@@ -36,7 +38,7 @@ impl table::EffectTable for OrbitInertiaTable {
             name: "orbit_inertia",
             example: EXAMPLE,
             speed: SpeedRole::Force,
-            needs: &[Need::OneCourse],
+            needs: &[Need::OneCourse, Need::BallCentrifugal],
             trial: Some(Trial { what: "", keys: &[] }),
         }
     }

@@ -71,6 +71,8 @@ pub enum Need {
     Expansion,
     /// Balls that follow each other on one course, which stands in space.
     OneCourse,
+    /// The centrifugal force of the balls, which presses all of them on a raceway.
+    BallCentrifugal,
 }
 
 /// Values with which `raceway prices` turns an effect on.
@@ -103,6 +105,8 @@ pub struct Context {
     pub turning_mass: Option<f64>,
     /// What keeps balls from following each other on one course, by its key; None: nothing does.
     pub parts_courses: Option<&'static str>,
+    /// Whether the scene has the centrifugal force of the balls.
+    pub has_ball_centrifugal: bool,
 }
 
 impl Context {
@@ -265,6 +269,10 @@ impl About {
                         }
                     }
                 }
+                Need::BallCentrifugal if !context.has_ball_centrifugal => problems.add(format!(
+                    "[effects.{name}] needs [effects.ball_centrifugal], without which nothing holds unloaded balls; \
+                     add it, or remove the effect"
+                )),
                 Need::OneCourse => {
                     if let Some(key) = context.parts_courses {
                         problems.add(format!(
@@ -273,7 +281,7 @@ impl About {
                         ));
                     }
                 }
-                Need::TurningInner | Need::Inertia => {}
+                Need::TurningInner | Need::Inertia | Need::BallCentrifugal => {}
             }
         }
     }

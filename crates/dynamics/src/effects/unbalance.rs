@@ -230,6 +230,7 @@ mod tests {
             has_lubricant: false,
             turning_mass: Some(2.0),
             parts_courses: None,
+            has_ball_centrifugal: false,
         };
         let messages = |mass: &str, eccentricity: &str, position: &str| {
             let table = UnbalanceTable {

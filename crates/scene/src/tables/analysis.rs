@@ -104,6 +104,7 @@ impl RawScene {
             has_lubricant: self.lubricant.is_some(),
             turning_mass: shaft.turning_mass(inner),
             parts_courses: profiles.parts_courses(&self.effects),
+            has_ball_centrifugal: self.effects.ball_centrifugal.is_some(),
         }
     }
 

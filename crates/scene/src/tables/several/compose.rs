@@ -365,6 +365,8 @@ fn check_loads(raw: &RawSeveral, problems: &mut Problems) {
         has_lubricant: false,
         turning_mass: None,
         parts_courses: turns.then_some("[effects.unbalance]"),
+        // Each bearing tells by itself.
+        has_ball_centrifugal: true,
     };
     on_shaft.check(context, problems);
 }

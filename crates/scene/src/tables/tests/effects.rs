@@ -17,12 +17,14 @@ fn with_effects(tables: &str) -> String {
     conserving(&format!("{head}{tables}\n{}[dynamic]{tail}", balls_for(tables)))
 }
 
-/// The balls that an effect needs, with the traction that these need.
+/// What an effect needs besides: free balls with their traction, or another effect.
 fn balls_for(tables: &str) -> &'static str {
     if tables.contains("[effects.traction]") {
         "[balls]\nmotion = \"free\"\n"
     } else if tables.contains("[effects.ball_drag]") {
         "[balls]\nmotion = \"free\"\n[effects.traction]\nlaw = \"coulomb\"\nfriction = 0.07\n"
+    } else if tables.contains("[effects.orbit_inertia]") {
+        "[effects.ball_centrifugal]\n"
     } else {
         ""
     }
@@ -45,9 +47,10 @@ fn the_example_of_every_effect_is_its_table() {
     for about in all() {
         let scene = parse(&with_effects(about.example), &[]).unwrap_or_else(|e| panic!("{e}"));
         let names = scene.effects.names();
-        let own: Vec<&str> = names.into_iter().filter(|name| *name != "traction").collect();
-        let expected = Some(about.name).filter(|name| *name != "traction");
-        assert_eq!(own, Vec::from_iter(expected));
+        let needed = balls_for(about.example);
+        let is_own = |name: &&str| *name == about.name || !needed.contains(&format!("effects.{name}]"));
+        let own: Vec<&str> = names.into_iter().filter(is_own).collect();
+        assert_eq!(own, [about.name]);
         let header = format!("effects.{}]", about.name);
         let start = about.example.trim_start_matches('[');
         assert!(start.starts_with(&header), "{}", about.example);
@@ -64,8 +67,10 @@ fn the_trial_of_every_effect_is_a_table_of_it() {
             set.push(format!("effects.{}={{}}", about.name));
         }
         let set: Vec<&str> = set.iter().map(String::as_str).collect();
-        let scene = parse(&with_effects(""), &set).unwrap_or_else(|e| panic!("{e}"));
-        assert_eq!(scene.effects.names(), [about.name]);
+        let needed = balls_for(about.example);
+        let scene = parse(&with_effects(needed), &set).unwrap_or_else(|e| panic!("{e}"));
+        assert_eq!(scene.effects.names().len(), 1 + usize::from(!needed.is_empty()));
+        assert!(scene.effects.names().contains(&about.name));
     }
 }
 
@@ -133,6 +138,10 @@ fn an_unbalance_heavier_than_what_turns_is_refused() {
 fn the_inertia_of_orbits_is_refused_where_balls_do_not_follow_each_other() {
     let text = with_effects("[effects.orbit_inertia]");
     parse(&text, &[]).unwrap();
+    let alone = message_of(&with_effects(""), &["effects.orbit_inertia={}"]);
+    let expected = "[effects.orbit_inertia] needs [effects.ball_centrifugal], without which nothing holds unloaded \
+                    balls; add it, or remove the effect";
+    assert!(alone.contains(expected), "{alone}");
     let unbalance = "effects.unbalance={ mass = \"10 g\", eccentricity = \"1 um\" }";
     let waves = "profiles.waviness=[{ ring = \"outer\", order = 3, amplitude = \"1 um\" }]";
     let sizes = "bearing.ball_diameters={ spread = \"1 um\", seed = 1 }";
