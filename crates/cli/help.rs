@@ -5,7 +5,7 @@ use std::process::ExitCode;
 
 use comm::print;
 use results::failure::Failure;
-use scene::reference::{self, ReferenceTable};
+use scene::reference;
 
 /// Prints help on a topic, or says which topics there are.
 pub fn help(topic: &[String], mut program: clap::Command) -> ExitCode {
@@ -90,26 +90,13 @@ fn print_all(text: &str) -> ExitCode {
 }
 
 fn of_key(key: &str) -> Result<String, String> {
-    let mut found = reference::about(key);
-    if found.is_empty() {
-        found = with_part(key);
-    }
-    match found.as_slice() {
+    match reference::about(key).as_slice() {
         [] => Err(format!(
             "no table and no key of a scene has the name {key:?}; expected one such as bearing, shaft.z or \
              contact_angle, and raceway help scene lists all"
         )),
         blocks => Ok(blocks.iter().map(|block| format!("{}\n\n", block.text)).collect()),
     }
-}
-
-/// The tables in whose dotted names, or in those of whose keys, a word stands: `gauge` of `probes.gauge.NAME`,
-/// `harmonic` of `schedule.harmonic`.
-fn with_part(word: &str) -> Vec<ReferenceTable> {
-    let has_word = |name: &str| name.split('.').any(|part| part == word);
-    let all = [reference::all(), reference::of_lists()].concat();
-    let names_it = |block: &ReferenceTable| has_word(&block.table) || block.keys().into_iter().any(has_word);
-    all.into_iter().filter(names_it).collect()
 }
 
 fn of_command(name: &str, program: &mut clap::Command) -> Result<String, String> {

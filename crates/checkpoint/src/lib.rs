@@ -67,7 +67,7 @@ pub use folder::{
 pub use grid::Grid;
 pub use growing::{FileStamp, GrowingFile, Stamps, start_of};
 pub use index::{Views, rebuild_index};
-pub use lock::{FolderLock, open_lock};
+pub use lock::{FolderLock, may_not_write, open_lock};
 pub use mesh_file::{MeshFile, read_mesh};
 pub use names::{INDEX_FILE, SERIES_FILE, step_file_name};
 pub use output::{Output, Resumed};

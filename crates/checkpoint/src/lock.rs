@@ -66,15 +66,23 @@ pub fn open_lock(path: &Path) -> Result<File, CheckpointError> {
     let mut options = OpenOptions::new();
     let opened = options.read(true).write(true).create(true).truncate(false);
     opened.open(path).map_err(|error| {
-        let source = match error.kind() {
-            ErrorKind::PermissionDenied | ErrorKind::ReadOnlyFilesystem => {
+        let source = match may_not_write(&error) {
+            true => {
                 let advice = "the command writes into this folder; copy it to where you may write";
                 std::io::Error::new(error.kind(), format!("{error}; {advice}"))
             }
-            _ => error,
+            false => error,
         };
         CheckpointError::io("open the lock", path)(source)
     })
+}
+
+/// Whether a place may not be written to, so that another one is the way out.
+pub fn may_not_write(error: &std::io::Error) -> bool {
+    matches!(
+        error.kind(),
+        ErrorKind::PermissionDenied | ErrorKind::ReadOnlyFilesystem
+    )
 }
 
 /// Fails if the lock is a link or a pipe: what is written into it would go elsewhere.

@@ -3,16 +3,11 @@
 use contact::Meridian;
 use contact::Side;
 use dynamics::effects::{AtEquilibrium, BallCentrifugal, Effect, Loads, Now, OrbitInertia};
-use dynamics::interactions::contact_damping::ContactDamping;
-use dynamics::kinematics::{Rolling, Speed};
-use dynamics::model::ShaftInertia;
-use dynamics::motion::{EquilibriumRates, Motion, MotionSettings, StepCache};
+use dynamics::kinematics::Speed;
 use dynamics::{DampingLaws, Linearisation, Model, ShaftDof, StaticSolution, StaticSolver};
 
+use crate::rolling_start::{SPEED, combined, found, rolling, spindle, tilts};
 use crate::support::Case;
-
-/// Speed of the shaft, rad/s: 40 000 rpm.
-const SPEED: f64 = 40e3 * std::f64::consts::PI / 30.0;
 
 fn inertia() -> OrbitInertia {
     OrbitInertia {
@@ -24,12 +19,7 @@ fn inertia() -> OrbitInertia {
 /// A spindle under a load across and one along, with and without the effect.
 fn models(case: Case) -> [Model; 2] {
     [false, true].map(|has_inertia| {
-        let mut model = case.rigid();
-        model.shaft_mass = 0.15;
-        model.shaft_inertia = ShaftInertia {
-            transverse: 6e-5,
-            polar: 1.1e-4,
-        };
+        let mut model = spindle(case);
         model.effects.push(Box::new(BallCentrifugal {
             speeds: Speed::constant(SPEED).into(),
             slip: [0.0; 2],
@@ -42,14 +32,6 @@ fn models(case: Case) -> [Model; 2] {
     })
 }
 
-fn combined() -> Case {
-    Case {
-        free_tilt: true,
-        radial: 1000.0,
-        ..Case::axial(2000.0)
-    }
-}
-
 fn solved(model: &Model) -> (StaticSolver, StaticSolution) {
     let mut solver = StaticSolver::new(model).unwrap();
     let solution = solver.solve(model, None).unwrap();
@@ -58,27 +40,11 @@ fn solved(model: &Model) -> (StaticSolver, StaticSolution) {
 
 /// By how much of it the tilt swings over 6 ms, and how far its mean over the last 2 ms lies off the start.
 fn swing_and_drift(model: &Model) -> [f64; 2] {
-    let rolling = Rolling::new(&model.geometry, Speed::constant(SPEED), [0.0; 2]);
-    let (mut solver, at) = solved(model);
-    let rates = EquilibriumRates::find(&mut solver, (model, &rolling), &at).unwrap();
-    let settings = MotionSettings {
-        contact_damping: Some(ContactDamping {
-            coefficient: 100.0,
-            full_approach: 1e-6,
-        }),
-        ..MotionSettings::conserving(1e-5, Speed::constant(SPEED))
-    };
-    let motion = Motion::new(model, settings).unwrap();
-    let mut state = motion.start_with(&at, Some(&rates));
-    let first = state.shaft[4];
-    let mut cache = StepCache::default();
-    let mut shares = Vec::new();
-    for _ in 0..600 {
-        state = motion.step(&state, &mut cache).unwrap().0;
-        shares.push(state.shaft[4] / first - 1.0);
-    }
-    let [low, high] = [f64::min, f64::max].map(|of| shares.iter().copied().fold(0.0, of));
-    [high - low, shares[400..].iter().sum::<f64>() / 200.0]
+    let (at, rates) = found((model, &rolling(model)));
+    let tilts = tilts(model, |motion| motion.start_with(&at, Some(&rates)));
+    let share = |tilt: &f64| tilt / tilts[0] - 1.0;
+    let [low, high] = [f64::min, f64::max].map(|of| tilts.iter().map(share).fold(0.0, of));
+    [high - low, tilts[401..].iter().map(share).sum::<f64>() / 200.0]
 }
 
 /// Wrong: the equilibrium of a fast bearing under a load across would not be where its motion rests. A seventh of a per

@@ -9,25 +9,41 @@ use dynamics::motion::{EquilibriumRates, Motion, MotionSettings, MotionState, St
 use dynamics::{Model, StaticSolution, StaticSolver};
 
 /// Speed of the shaft, rad/s: 40 000 rpm.
-const SPEED: f64 = 40e3 * std::f64::consts::PI / 30.0;
+pub const SPEED: f64 = 40e3 * std::f64::consts::PI / 30.0;
 
-fn case() -> (Model, Rolling) {
-    let case = Case {
+/// A load along the axis and one across.
+pub fn combined() -> Case {
+    Case {
         free_tilt: true,
         radial: 1000.0,
         ..Case::axial(2000.0)
-    };
+    }
+}
+
+/// A spindle on rigid rings.
+pub fn spindle(case: Case) -> Model {
     let mut model = case.rigid();
     model.shaft_mass = 0.15;
     model.shaft_inertia = ShaftInertia {
         transverse: 6e-5,
         polar: 1.1e-4,
     };
-    let rolling = Rolling::new(&model.geometry, Speed::constant(SPEED), [0.0; 2]);
+    model
+}
+
+fn case() -> (Model, Rolling) {
+    let model = spindle(combined());
+    let rolling = rolling(&model);
     (model, rolling)
 }
 
-fn found((model, rolling): (&Model, &Rolling)) -> (StaticSolution, EquilibriumRates) {
+/// How its balls roll.
+pub fn rolling(model: &Model) -> Rolling {
+    Rolling::new(&model.geometry, Speed::constant(SPEED), [0.0; 2])
+}
+
+/// The equilibrium, and the rates with which it goes round.
+pub fn found((model, rolling): (&Model, &Rolling)) -> (StaticSolution, EquilibriumRates) {
     let mut solver = StaticSolver::new(model).unwrap();
     let at = solver.solve(model, None).unwrap();
     let rates = EquilibriumRates::find(&mut solver, (model, rolling), &at).unwrap();
@@ -59,8 +75,8 @@ fn balls_have_the_velocities_of_their_orbits() {
     assert!(largest > 1e-3 && worst < 0.01, "{worst}");
 }
 
-/// Shaft tilts over the steps of a motion with damped contacts.
-fn tilts(model: &Model, first: impl Fn(&Motion<'_>) -> MotionState) -> Vec<f64> {
+/// Shaft tilts over the steps of a motion with damped contacts, the first that of its start.
+pub fn tilts(model: &Model, first: impl Fn(&Motion<'_>) -> MotionState) -> Vec<f64> {
     let settings = MotionSettings {
         contact_damping: Some(ContactDamping {
             coefficient: 100.0,

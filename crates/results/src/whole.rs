@@ -3,10 +3,11 @@
 //! The content goes to a new hidden file in the same folder, is brought to the disk, and renamed.
 
 use std::fs::File;
-use std::io::{BufWriter, ErrorKind, Write};
+use std::io::{BufWriter, Write};
 use std::path::Path;
 
 use anyhow::{Context, anyhow};
+use checkpoint::may_not_write;
 
 /// Writes a file. One that is there already is replaced if `is_own` knows its content as the program's own.
 pub fn write(path: &Path, content: &[u8], is_own: impl Fn(&[u8]) -> bool) -> anyhow::Result<()> {
@@ -126,12 +127,12 @@ fn write_by(path: &Path, fill: impl FnOnce(&mut dyn Write) -> std::io::Result<()
 
 /// Why a file or folder cannot be made. Where it may not be made at all another place is the way out.
 fn cannot(action: &str, path: &Path, error: std::io::Error) -> anyhow::Error {
-    let text = match error.kind() {
-        ErrorKind::PermissionDenied | ErrorKind::ReadOnlyFilesystem => format!(
+    let text = match may_not_write(&error) {
+        true => format!(
             "cannot {action} {}: {error}; give another --out where the command has one",
             path.display()
         ),
-        _ => format!("cannot {action} {}", path.display()),
+        false => format!("cannot {action} {}", path.display()),
     };
     anyhow::Error::new(error).context(text)
 }
@@ -148,6 +149,8 @@ fn write_hidden(
 
 #[cfg(test)]
 mod tests {
+    use std::io::ErrorKind;
+
     use super::*;
     use crate::failure::one_line;
 

@@ -239,25 +239,6 @@ pub fn mean_forces(
     result
 }
 
-/// Mean force of a contact that knows nothing of the ball's other one, of an integrator that does not dissipate.
-pub fn mean_force(
-    law: &ContactLaw,
-    touching: f64,
-    l: [[f64; 2]; 2],
-    scheme: ContactScheme,
-    viscous: Option<Viscous>,
-) -> MeanForce {
-    let [d0, d1] = l.map(|l| size(l) - touching);
-    let normal = match scheme {
-        ContactScheme::DiscreteGradient => mean_normal(law, d0, d1),
-        ContactScheme::Pointwise => {
-            let (start, end) = (law.evaluate(d0), law.evaluate(d1));
-            [0.5 * (start.force + end.force), 0.5 * end.tangent]
-        }
-    };
-    along_lengths(l, normal, viscous, d1 - d0).0
-}
-
 /// Mean force of a contact with a viscous force that depends on the elastic one: `viscous` gets that and its derivative
 /// with respect to |l1|, and the change of |l|.
 pub fn mean_force_with(

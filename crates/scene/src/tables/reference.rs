@@ -104,7 +104,9 @@ pub fn of_lists() -> Vec<ReferenceTable> {
     blocks(SEVERAL).into_iter().filter(is_own).collect()
 }
 
-/// The tables that have a key, or whose name begins with `topic`: `bearing`, `bearing.width`, `width`.
+/// The tables that have a key, or whose name begins with `topic`: `bearing`, `bearing.width`, `width`; of no such topic
+/// those in whose dotted names, or in those of whose keys, it stands: `gauge` of `probes.gauge.NAME`, `harmonic` of
+/// `schedule.harmonic`.
 pub fn about(topic: &str) -> Vec<ReferenceTable> {
     let topic = topic.trim_matches(['[', ']']);
     let all = [all(), of_lists()].concat();
@@ -121,7 +123,13 @@ pub fn about(topic: &str) -> Vec<ReferenceTable> {
     if !tables.is_empty() {
         return tables;
     }
-    all.iter().filter(has_key).cloned().collect()
+    let with_key: Vec<ReferenceTable> = all.iter().filter(has_key).cloned().collect();
+    if !with_key.is_empty() {
+        return with_key;
+    }
+    let has_part = |name: &str| name.split('.').any(|part| part == topic);
+    let names_it = |block: &&ReferenceTable| has_part(&block.table) || block.keys().into_iter().any(has_part);
+    all.iter().filter(names_it).cloned().collect()
 }
 
 /// Blocks as a page: a heading each, and the TOML.

@@ -10,7 +10,7 @@ use super::ring_step::{ElasticPlace, Middle, RingStep, SlopeForce};
 use super::rolling_surface::{OverSurface, RollingSurface, StripTerms};
 use super::surface_force::{SurfaceForce, add_surface, over_surface};
 use crate::interactions::contact_damping::{ContactDamping, StepDamping, Viscous};
-use crate::interactions::discrete_gradient::{ContactScheme, MeanForce, mean_force};
+use crate::interactions::discrete_gradient::{ContactScheme, MeanForce};
 use crate::interactions::traction::{Ellipse, Resultant, Slip, Traction};
 
 /// The slip that traction follows.
@@ -118,18 +118,6 @@ impl FoundContact {
 }
 
 impl ContactStep {
-    /// The contact at lengths at start and end.
-    pub fn evaluate(&self, lengths: [[f64; N_LENGTHS]; 2]) -> FoundContact {
-        let at = self.placed(lengths);
-        let over = self.over_surface((&at.start, &at.last), (&at.mid, &at.x));
-        let normal = match &over {
-            Some(over) => over.normal,
-            None => self.normal_force(&at.start, &at.last),
-        };
-        let load = [0, 1].map(|i| chain(normal.force[i], normal.tangent[i].into(), at.last.reach));
-        self.found(at, Pressed { normal, load }, over)
-    }
-
     pub(super) fn placed(&self, [from, end]: [[f64; N_LENGTHS]; 2]) -> StandingOver {
         let x: [Jet; N_LENGTHS] = std::array::from_fn(|i| Jet::length(i, end[i]));
         let [start, last] = [self.start(&from), self.standing_at_end(&x)];
@@ -240,12 +228,6 @@ impl ContactStep {
         })
     }
 
-    fn normal_force(&self, start: &Standing, end: &Standing) -> MeanForce {
-        let reach = [start, end].map(reach_of);
-        let l = reach.map(Meridian::to_array);
-        mean_force(&self.law, self.touching, l, self.scheme, self.viscous(reach))
-    }
-
     /// What damping does along the normal, from l at the start to l at the end, m.
     pub(super) fn viscous(&self, reach: [Meridian; 2]) -> Option<Viscous> {
         let damping = self.step_damping()?;
@@ -253,11 +235,7 @@ impl ContactStep {
     }
 
     /// The contact on the surfaces over which it rolls; None where they are smooth.
-    fn over_surface(
-        &self,
-        course: (&Standing, &Standing),
-        middle: (&Middle, &[Jet; N_LENGTHS]),
-    ) -> Option<OverSurface> {
+    pub(super) fn over_surface(&self, at: &StandingOver) -> Option<OverSurface> {
         let terms = StripTerms {
             compliance: self.law.compliance(),
             touching: self.touching,
@@ -266,6 +244,7 @@ impl ContactStep {
             damping: self.step_damping(),
         };
         let surface = self.surface.as_ref()?;
+        let (course, middle) = ((&at.start, &at.last), (&at.mid, &at.x));
         Some(over_surface(surface, terms, &self.ring, course, middle))
     }
 
