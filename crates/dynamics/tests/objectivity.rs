@@ -5,10 +5,11 @@
 //! the frame too.
 
 use std::f64::consts::TAU;
+use std::sync::Arc;
 
-use crate::support::rings::Level;
+use crate::support::rings::{Level, ring, turned};
 use crate::support::{Case, equilibrium, states_from};
-use contact::{BearingGeometry, Meridian};
+use contact::{BearingGeometry, Meridian, Side};
 use dynamics::displacements::Displacements;
 use dynamics::effects::unbalance::Unbalance;
 use dynamics::effects::{AxialForce, Effect, FrameRotation, Gravity, Moment, RadialForce};
@@ -279,12 +280,15 @@ fn a_motion_turned_in_space_is_the_same_motion() {
     }
 }
 
-/// Wrong: an elastic ring, or the forces on its turning body, would know where it stands in space. Turns that bring its
-/// mesh of 36 sectors onto itself; from an undeformed start, whose waves run through both rings.
+/// Wrong: an elastic ring, or the forces on its turning body, would know where it stands in space. Turned by any angle
+/// with their meshes, and by turns that bring a mesh of 36 sectors onto itself; from an undeformed start, whose waves
+/// run through both rings.
 #[test]
 fn a_motion_of_elastic_rings_turned_in_space_is_the_same_motion() {
-    let model = |turn: Turn| {
-        let bearing = Case::axial(0.0).flexible(ContactMode::Patch, Level::hex8(36, 6, 1, 2), Hold::Clamped);
+    let model = |turn: Turn, of_mesh: f64| {
+        let (level, hold) = (Level::hex8(36, 6, 1, 2), Hold::Clamped);
+        let mut bearing = Case::axial(0.0).flexible(ContactMode::Patch, level, hold);
+        bearing.rings = Side::BOTH.map(|side| Some(Arc::new(turned(ring(side, level, hold), of_mesh))));
         let mut model = turn.loaded(bearing);
         model
             .effects
@@ -297,11 +301,17 @@ fn a_motion_of_elastic_rings_turned_in_space_is_the_same_motion() {
         ..Displacements::zero(BALLS, [true; 2])
     };
     let push = [0.02, 0.03, -0.01, 0.5, -0.8];
-    let first = run(STAYS, &model(STAYS), &start, push);
+    let first = run(STAYS, &model(STAYS, 0.0), &start, push);
     assert!(first[20].forces.iter().any(|f| f.norm() > 100.0));
-    for (half, turns) in [(false, 9.0), (true, 0.0), (true, 6.0)] {
-        let angle = turns * TAU / 36.0;
+    let by_sectors = |sectors: f64| sectors * TAU / 36.0;
+    for (half, angle, of_mesh) in [
+        (false, by_sectors(9.0), 0.0),
+        (true, 0.0, 0.0),
+        (true, by_sectors(6.0), 0.0),
+        (false, 0.7, 0.7),
+        (false, -2.4, -2.4),
+    ] {
         let turn = Turn { half, angle };
-        check_motion(turn, &first, &run(turn, &model(turn), &start, push));
+        check_motion(turn, &first, &run(turn, &model(turn, of_mesh), &start, push));
     }
 }

@@ -1,13 +1,15 @@
 //! The inertia of balls on their orbits in equilibria: beside motions, and on balls whose orbits stand askew.
 
-use contact::Meridian;
-use contact::Side;
-use dynamics::effects::{AtEquilibrium, BallCentrifugal, Effect, Loads, Now, OrbitInertia};
+use std::sync::Arc;
+
+use contact::{Meridian, Side};
+use dynamics::effects::{AtEquilibrium, BallCentrifugal, Effect, FrameRotation, Loads, Now, OrbitInertia};
 use dynamics::kinematics::Speed;
-use dynamics::{DampingLaws, Linearisation, Model, ShaftDof, StaticSolution, StaticSolver};
+use dynamics::{DampingLaws, Hold, Linearisation, Model, ShaftDof, StaticSolution, StaticSolver};
 
 use crate::rolling_start::{SPEED, combined, found, rolling, spindle, tilts};
 use crate::support::Case;
+use crate::support::rings::{Level, ring};
 
 fn inertia() -> OrbitInertia {
     OrbitInertia {
@@ -39,12 +41,16 @@ fn solved(model: &Model) -> (StaticSolver, StaticSolution) {
 }
 
 /// By how much of it the tilt swings over 6 ms, and how far its mean over the last 2 ms lies off the start.
-fn swing_and_drift(model: &Model) -> [f64; 2] {
+fn swing_and_drift(model: &Model, dt: f64) -> [f64; 2] {
     let (at, rates) = found((model, &rolling(model)));
-    let tilts = tilts(model, |motion| motion.start_with(&at, Some(&rates)));
+    let tilts = tilts(model, dt, |motion| motion.start_with(&at, Some(&rates)));
     let share = |tilt: &f64| tilt / tilts[0] - 1.0;
     let [low, high] = [f64::min, f64::max].map(|of| tilts.iter().map(share).fold(0.0, of));
-    [high - low, tilts[401..].iter().map(share).sum::<f64>() / 200.0]
+    let last = &tilts[2 * tilts.len() / 3..];
+    [
+        high - low,
+        last.iter().map(share).sum::<f64>() / last.len() as f64,
+    ]
 }
 
 /// Wrong: the equilibrium of a fast bearing under a load across would not be where its motion rests. A seventh of a per
@@ -52,12 +58,31 @@ fn swing_and_drift(model: &Model) -> [f64; 2] {
 /// that of single balls that pass.
 #[test]
 fn a_motion_rests_at_the_equilibrium() {
-    let [without, with] = models(combined()).map(|model| swing_and_drift(&model));
+    let [without, with] = models(combined()).map(|model| swing_and_drift(&model, 1e-5));
     println!("swing and drift of a tilt {without:?} without, {with:?} with the inertia of orbits");
     assert!(without[1].abs() > 1e-3, "{without:?}");
     assert!(
         with[1].abs() < 0.01 * without[1].abs() && with[0] < 0.2 * without[0],
         "{with:?}"
+    );
+}
+
+/// Wrong: on elastic rings at speed, what a motion lies off its equilibrium would be more than an error of its step:
+/// something else that one has and the other lacks. Rings of coarse meshes that turn with their inertia; steps of 10 us
+/// are 15 to a ball that passes, and half of that leaves an eighth.
+#[test]
+fn a_motion_of_elastic_rings_rests_there_as_its_step_shrinks() {
+    let [_, mut model] = models(combined());
+    let level = Level::hex8(90, 6, 1, 2);
+    model.rings = Side::BOTH.map(|side| Some(Arc::new(ring(side, level, Hold::Clamped))));
+    model
+        .effects
+        .push(Box::new(FrameRotation::new(Speed::constant(SPEED))));
+    let [whole, half] = [1e-5, 5e-6].map(|dt| swing_and_drift(&model, dt)[1]);
+    println!("drift of a tilt {whole:.1e}, {half:.1e} with half the step");
+    assert!(
+        whole.abs() < 5e-4 && half.abs() < 0.3 * whole.abs(),
+        "{whole} {half}"
     );
 }
 

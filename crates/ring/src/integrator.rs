@@ -142,6 +142,12 @@ impl Integrator {
         let a1 = (dw - dt * v0) * rate - share * a0;
         [v0 + dt * (self.old[1] * a0 + self.gamma * a1), a1]
     }
+
+    /// Velocity and acceleration at the end of a step with the weighted acceleration `mean`.
+    pub fn update_by(&self, dt: f64, mean: f64, v0: f64, a0: f64) -> [f64; 2] {
+        let a1 = (mean - self.alpha_m * a0) / (1.0 - self.alpha_m);
+        [v0 + dt * (self.old[1] * a0 + self.gamma * a1), a1]
+    }
 }
 
 #[cfg(test)]

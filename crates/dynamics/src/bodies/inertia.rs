@@ -58,6 +58,25 @@ impl Inertia {
         }
     }
 
+    /// The same under the force of all else on it at the weighted time of the step, N, when it ends at `x`: what Newton
+    /// leaves of the balance then stays in the place, and no momentum is lost to it.
+    pub fn update_under(
+        &self,
+        StepScheme {
+            integrator: scheme,
+            dt,
+        }: StepScheme,
+        force: f64,
+        x: f64,
+    ) -> [f64; 2] {
+        if self.mass == 0.0 {
+            return self.update(scheme, x, dt);
+        }
+        let [_, v0, a0] = self.start;
+        let acceleration = (self.load_at(scheme, x) + force) / self.mass;
+        scheme.update_by(dt, acceleration, v0, a0)
+    }
+
     /// Energy that the scheme takes from the body, J: work of its inertia less the gain of kinetic energy.
     pub fn numerical_loss(&self, scheme: Integrator, x: f64, dt: f64) -> f64 {
         if self.mass == 0.0 || scheme.is_conserving() {

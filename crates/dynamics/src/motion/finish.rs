@@ -176,18 +176,23 @@ fn local_error(new: &[Meridian], old: &[Meridian], dt: f64, approaches: &[f64]) 
     }
 }
 
-/// Velocities and accelerations of a body at the end of a step; adds its works.
+/// Velocities and accelerations of a body at the end of a step, under the forces of all else on it where they are
+/// known; adds its works.
 fn finish_body<const N: usize>(
     body: &FlatBody<N>,
-    StepScheme { integrator, dt }: StepScheme,
-    end: [f64; N],
+    step: StepScheme,
+    (end, forces): ([f64; N], Option<[f64; N]>),
     ledger: &mut Ledger,
 ) -> [[f64; N]; 2] {
+    let StepScheme { integrator, dt } = step;
     let [mut velocity, mut acceleration] = [[0.0; N]; 2];
     for (i, (dof, x)) in body.dofs.iter().zip(end).enumerate() {
         ledger.load_work += dof.load_at(integrator, x) * (x - dof.start[0]);
         ledger.numerical_loss += dof.numerical_loss(integrator, x, dt);
-        [velocity[i], acceleration[i]] = dof.update(integrator, x, dt);
+        [velocity[i], acceleration[i]] = match forces {
+            Some(forces) => dof.update_under(step, forces[i], x),
+            None => dof.update(integrator, x, dt),
+        };
     }
     [velocity, acceleration]
 }
@@ -218,21 +223,25 @@ fn finish_shaft(next: &mut MotionState, parts: &BearingParts, solution: &StepSol
     }
     next.shaft = solution.shaft;
     [next.shaft_velocity, next.shaft_acceleration] =
-        finish_body(&parts.shaft, step, solution.shaft, &mut next.ledger);
+        finish_body(&parts.shaft, step, (solution.shaft, None), &mut next.ledger);
 }
 
+/// Balls get what the rings get, with the opposite sign, so that momentum is kept whatever Newton leaves.
 fn finish_balls(next: &mut MotionState, parts: &BearingParts, solution: &StepSolution, step: StepScheme) {
-    for (b, (ball, end)) in parts.balls.iter().zip(&solution.balls).enumerate() {
+    let on_rings = parts.with_dead(&solution.forces);
+    let balls = parts.balls.iter().zip(&solution.balls);
+    for (b, ((ball, end), of_ball)) in balls.zip(on_rings.as_chunks::<4>().0).enumerate() {
+        let forces = [0, 1].map(|i| -(of_ball[i] + of_ball[2 + i]));
         next.balls[b] = *end;
         [next.ball_velocities[b], next.ball_accelerations[b]] =
-            finish_body(ball, step, end.to_array(), &mut next.ledger).map(Meridian::from);
+            finish_body(ball, step, (end.to_array(), Some(forces)), &mut next.ledger).map(Meridian::from);
     }
 }
 
 fn finish_seat(next: &mut MotionState, parts: &BearingParts, solution: &StepSolution, step: StepScheme) {
     let Some(seat) = &parts.seat else { return };
     let end = [0.0, 0.0, solution.seat, 0.0, 0.0];
-    let [velocity, acceleration] = finish_body(&seat.body, step, end, &mut next.ledger);
+    let [velocity, acceleration] = finish_body(&seat.body, step, (end, None), &mut next.ledger);
     let [work, loss] = seat.spring.works([seat.body.dofs[2].start[0], solution.seat]);
     next.ledger.load_work += work;
     next.ledger.numerical_loss += loss;

@@ -10,7 +10,7 @@ mod smooth;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use crate::support::rings::{Level, ring};
+use crate::support::rings::{Level, ring, turned};
 use crate::support::{Case, equilibrium, on_threads, steel};
 use body::{BesideRing, BodySeat, SeatBasis, SeatCylinder, SeatSpace, SeatTie, Surrounding};
 use contact::Side;
@@ -124,17 +124,6 @@ fn ever_more_functions_on_a_rigid_body_clamp_the_seat() {
         errors.windows(2).all(|e| e[1] < 0.6 * e[0]) && errors[3] < 5e-3,
         "{errors:?}"
     );
-}
-
-/// A ring turned about its axis, so that no node lies on +x.
-fn turned(mut ring: RingModel, angle: f64) -> RingModel {
-    let (sin, cos) = angle.sin_cos();
-    let nodes = ring.mesh.nodes.iter();
-    let nodes: Vec<[f64; 3]> = nodes
-        .map(|[x, y, z]| [cos * x - sin * y, sin * x + cos * y, *z])
-        .collect();
-    ring.mesh.nodes = nodes.into();
-    ring
 }
 
 /// Wrong: with all orders and degrees that its nodes have, a seat on a rigid body would still move somewhere. 36 nodes

@@ -45,6 +45,17 @@ pub fn ring(side: Side, level: Level, hold: Hold) -> RingModel {
     ring_model(side, mesh, hold)
 }
 
+/// A ring whose mesh is turned about its axis.
+pub fn turned(mut ring: RingModel, angle: f64) -> RingModel {
+    let (sin, cos) = angle.sin_cos();
+    let nodes = ring.mesh.nodes.iter();
+    let nodes: Vec<[f64; 3]> = nodes
+        .map(|[x, y, z]| [cos * x - sin * y, sin * x + cos * y, *z])
+        .collect();
+    ring.mesh.nodes = nodes.into();
+    ring
+}
+
 /// The ring with a given mesh.
 pub fn ring_model(side: Side, mesh: Mesh, hold: Hold) -> RingModel {
     RingModel {
