@@ -46,7 +46,7 @@ fn points_of_a_list_have_the_same_bits_on_any_number_of_threads() {
 }
 
 /// Wrong: jobs that share a sweep of a list would solve other points than the whole sweep has, or number them
-/// otherwise; `resume` would send a user off to solve all of them again.
+/// otherwise; `resume` would say that points are there which are missing, or send a user off to solve all again.
 #[test]
 fn points_of_a_list_can_be_solved_apart() {
     let dir = swept();
@@ -58,13 +58,11 @@ fn points_of_a_list_can_be_solved_apart() {
         assert_eq!(refused.code, Some(2));
         assert!(refused.stderr.contains(expected), "{}", refused.stderr);
     };
-    rest(
-        "whole",
-        "can be resumed; its points up to the last, 10, are there",
-    );
+    rest("whole", "can be resumed; points 0-10 are there\n");
     rest(
         "part",
-        "its points up to 9 are there, and the same command with --points 10-10 and another --out",
+        "can be resumed; points 7-9 are there, points 0-6, 10 are missing; the same command with --points 0-6, with \
+         --points 10, each with another --out, computes the missing ones",
     );
     for bearing in ["front", "rear"] {
         let table = |out: &str| Table::read(&dir, &format!("{out}/{bearing}/balls.csv"));
