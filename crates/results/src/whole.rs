@@ -77,6 +77,15 @@ pub fn require_free(dir: &Path, names: &[&str]) -> anyhow::Result<()> {
     }
 }
 
+/// The folder that a command writes into: the one asked for, where nothing of these names may be yet, or that of the
+/// results.
+pub fn output_folder<'a>(asked: Option<&'a Path>, dir: &'a Path, names: &[&str]) -> anyhow::Result<&'a Path> {
+    let Some(out) = asked else { return Ok(dir) };
+    require_free(out, names)?;
+    make_asked_folder(out)?;
+    Ok(out)
+}
+
 /// Makes a folder in one that is there, unless somebody else just did. A link in its place is not followed.
 pub fn make_folder(path: &Path) -> anyhow::Result<()> {
     match std::fs::create_dir(path) {

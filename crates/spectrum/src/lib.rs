@@ -19,7 +19,7 @@ use comm::print;
 use figure::{Axis, DataPoint, Figure, Series};
 use results::failure::Failure;
 use results::integrity::warn_of_doubts;
-use results::whole::{make_folder, require_own_picture, write, write_picture};
+use results::whole::{make_folder, output_folder, require_own_picture, write, write_picture};
 use scene::{Analysis, MeshFiles, Scene};
 
 use fourier::LineSpectrum;
@@ -65,6 +65,9 @@ pub struct SpectrumCommand {
     /// Highest frequency of the figure, Hz, or order; default: the tenth multiple of the highest line.
     #[arg(long)]
     upto: Option<f64>,
+    /// Folder of table, figure and signal; default: the folder of the results. Nothing in it is replaced.
+    #[arg(long)]
+    out: Option<PathBuf>,
 }
 
 /// Two frequencies, Hz.
@@ -89,6 +92,9 @@ impl FromStr for Band {
         }
     }
 }
+
+/// Folder of the figures in that of the tables.
+const FIGURES: &str = "figures";
 
 /// Height from name to name of the lines in a figure, as a share of it.
 const LABEL_STEP: f64 = 0.08;
@@ -150,15 +156,18 @@ pub fn spectrum(request: &SpectrumCommand) -> Result<(), Failure> {
     });
     warn_of_doubts(dir)?;
     let figure = draw(&named, &marks, request.upto)?.images()?;
-    let table = dir.join(format!("{}.csv", named.file));
-    let picture = dir.join("figures").join(&named.file);
+    let names = request.file_names(&named, &signal);
+    let names: Vec<&str> = names.iter().map(String::as_str).collect();
+    let out = output_folder(request.out.as_deref(), dir, &names)?;
+    let table = out.join(format!("{}.csv", named.file));
+    let picture = out.join(FIGURES).join(&named.file);
     require_own_picture(&picture)?;
     write_table(&table, &named)?;
-    make_folder(&dir.join("figures"))?;
+    make_folder(&out.join(FIGURES))?;
     write_picture(&picture, &figure.svg, &figure.png)?;
-    say(dir, &named, &marks);
+    say(out, &named, &marks);
     if request.wav {
-        let [sound, text] = sound::write_wav(dir, &signal)?;
+        let [sound, text] = sound::write_wav(out, &signal)?;
         print::line(format_args!(
             "{}, its scale in {}",
             sound.display(),
@@ -166,7 +175,7 @@ pub fn spectrum(request: &SpectrumCommand) -> Result<(), Failure> {
         ));
     }
     if request.csv {
-        print::line(format_args!("{}", sound::write_csv(dir, &signal)?.display()));
+        print::line(format_args!("{}", sound::write_csv(out, &signal)?.display()));
     }
     Ok(())
 }
@@ -209,6 +218,20 @@ pub fn scene_of(dir: &Path) -> Result<Scene, Failure> {
 }
 
 impl SpectrumCommand {
+    /// The files that are written.
+    fn file_names(&self, named: &Titled, signal: &Signal) -> Vec<String> {
+        let file = &named.file;
+        let mut names = vec![format!("{file}.csv")];
+        names.extend(["svg", "png"].map(|ending| format!("{FIGURES}/{file}.{ending}")));
+        if self.wav {
+            names.extend(sound::wav_names(signal));
+        }
+        if self.csv {
+            names.push(sound::csv_name(signal));
+        }
+        names
+    }
+
     /// The signal that is asked for, within the span of time.
     fn signal(&self) -> anyhow::Result<Signal> {
         let span = [self.from, self.to];
@@ -394,7 +417,7 @@ fn write_table(path: &Path, named: &Titled) -> anyhow::Result<()> {
 }
 
 /// What stands at the lines.
-fn say(dir: &Path, named: &Titled, marks: &[Line]) {
+fn say(out: &Path, named: &Titled, marks: &[Line]) {
     // An order has no unit.
     let unit = if named.over.column == FREQUENCY.column {
         " Hz"
@@ -404,8 +427,8 @@ fn say(dir: &Path, named: &Titled, marks: &[Line]) {
     print::line(format_args!(
         "{}.csv in {}, figure in {}; resolution {:.4}{unit}; {}:",
         named.file,
-        dir.display(),
-        dir.join("figures").display(),
+        out.display(),
+        out.join(FIGURES).display(),
         named.spectrum.resolution,
         named.column
     ));
