@@ -13,7 +13,9 @@ use scene::{SeveralScene, names_of_bearings};
 
 use crate::failure::Failure;
 use crate::folder::{remove_outdated, start_again};
+use crate::modes::TABLE as MODES_TABLE;
 use crate::several::{BALLS_TABLE, BEARINGS_TABLE, ENERGY_TABLE, SCENE_TEXT, SHAFT_TABLE};
+use crate::several_modes::SHAFT_TABLE as MODE_SHAFT_TABLE;
 use crate::summary::SUMMARY_FILE;
 use crate::whole::{make_asked_folder, require_free, write_new};
 
@@ -21,7 +23,15 @@ use crate::whole::{make_asked_folder, require_free, write_new};
 const STARTING: &str = ".raceway.starting_list";
 
 /// What a run makes beside the folders of its bearings before its first step.
-const FIRST_FILES: [&str; 5] = [SCENE_TEXT, BALLS_TABLE, BEARINGS_TABLE, SHAFT_TABLE, ENERGY_TABLE];
+const FIRST_FILES: [&str; 7] = [
+    SCENE_TEXT,
+    BALLS_TABLE,
+    BEARINGS_TABLE,
+    SHAFT_TABLE,
+    ENERGY_TABLE,
+    MODES_TABLE,
+    MODE_SHAFT_TABLE,
+];
 
 /// A run of a list whose bearings have no folders yet.
 pub struct ListStart {
