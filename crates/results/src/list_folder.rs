@@ -7,8 +7,9 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, anyhow};
-use checkpoint::{CheckpointError, FolderLock, MESH_FILE, begin_anew, is_unfinished_start, lock};
+use checkpoint::{CheckpointError, FolderLock, MESH_FILE, all_steps, begin_anew, is_unfinished_start, lock};
 use comm::{Communicator, print};
+use input::shell_word;
 use scene::{SeveralScene, names_of_bearings};
 
 use crate::failure::Failure;
@@ -127,6 +128,28 @@ pub fn ended_early(dir: &Path) -> Failure {
         "{} holds no step that is whole in all bearings: {}",
         dir.display(),
         start_again(dir)
+    ))
+}
+
+/// What to say of a folder of one bearing or of a list that has no summary: whether a process still writes, or how to
+/// go on with a run that was killed.
+pub fn not_ended(dir: &Path) -> Failure {
+    let folders: Vec<PathBuf> = std::iter::once(dir.to_path_buf()).chain(folders(dir)).collect();
+    let writer = folders
+        .iter()
+        .find_map(|folder| lock::writer(folder).ok().flatten());
+    let has_steps = |folder: &PathBuf| all_steps(folder).is_ok_and(|steps| !steps.is_empty());
+    let rest = match writer {
+        Some(owner) => format!(", and {owner} still writes to it"),
+        None if folders.iter().any(has_steps) => format!(
+            "; if it was killed, raceway resume {} goes on with a run over time, and says of others what to do",
+            shell_word(dir.display())
+        ),
+        None => String::new(),
+    };
+    Failure::User(anyhow!(
+        "{} has no {SUMMARY_FILE}; expected the results of a run that has ended{rest}",
+        dir.display()
     ))
 }
 
