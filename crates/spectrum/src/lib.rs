@@ -5,6 +5,7 @@ pub mod fourier;
 pub mod lines;
 pub mod orders;
 pub mod passages;
+mod picture;
 pub mod signal;
 mod sound;
 mod spall_length;
@@ -16,7 +17,7 @@ use anyhow::{Context, bail, ensure};
 use checkpoint::{all_steps, read_any_step};
 use clap::Args;
 use comm::print;
-use figure::{Axis, DataPoint, Figure, Series};
+use figure::Axis;
 use results::failure::Failure;
 use results::integrity::warn_of_doubts;
 use results::whole::{make_folder, output_folder, require_own_picture, write, write_picture};
@@ -24,6 +25,7 @@ use scene::{Analysis, MeshFiles, Scene};
 
 use fourier::LineSpectrum;
 use lines::{Line, lines, smear};
+use picture::{Abscissa, FREQUENCY, Titled, draw};
 use signal::Signal;
 
 pub use spall_length::{SpallLengthCommand, spall_length};
@@ -95,45 +97,6 @@ impl FromStr for Band {
 
 /// Folder of the figures in that of the tables.
 const FIGURES: &str = "figures";
-
-/// Height from name to name of the lines in a figure, as a share of it.
-const LABEL_STEP: f64 = 0.08;
-
-/// Height of the marks of sidebands, as a share of the figure.
-const SIDEBAND_HEIGHT: f64 = 0.4;
-
-/// A spectrum and how it is called.
-struct Titled {
-    spectrum: LineSpectrum,
-    /// Name of the files.
-    file: String,
-    /// Second column of the table.
-    column: String,
-    title: String,
-    axis: Axis,
-    is_density: bool,
-    /// From SI to the unit of the axis.
-    factor: f64,
-    over: Abscissa,
-}
-
-/// What a spectrum is over.
-#[derive(Clone, Copy)]
-struct Abscissa {
-    /// First column of the table.
-    column: &'static str,
-    name: &'static str,
-    unit: &'static str,
-    /// Hz of one unit: 1, or the mean speed of the tachometer, turns a second.
-    hertz: f64,
-}
-
-const FREQUENCY: Abscissa = Abscissa {
-    column: "frequency_hz",
-    name: "frequency",
-    unit: "Hz",
-    hertz: 1.0,
-};
 
 /// Writes the table and the figure of a spectrum.
 pub fn spectrum(request: &SpectrumCommand) -> Result<(), Failure> {
@@ -277,7 +240,7 @@ impl SpectrumCommand {
                 file: file("_density"),
                 column: format!("density_{ending}_squared_per_{per}"),
                 title: format!("Power density of {what}"),
-                axis: Axis::logarithmic("power density", format!("({})²/{}", unit.sign, samples.over.unit)),
+                axis: Axis::logarithmic("power density", density_unit(unit.sign, samples.over)),
                 is_density: true,
                 factor: unit.factor * unit.factor,
                 over: samples.over,
@@ -327,6 +290,19 @@ impl SpectrumCommand {
     }
 }
 
+/// Unit of a power density: an order has none, and a pure number only that of the abscissa.
+fn density_unit(sign: &str, over: Abscissa) -> String {
+    let square = if sign == "1" {
+        sign.to_string()
+    } else {
+        format!("({sign})²")
+    };
+    match over.unit {
+        "1" => square,
+        unit => format!("{square}/{unit}"),
+    }
+}
+
 /// Samples of equal steps of time or angle.
 struct Samples {
     values: Vec<f64>,
@@ -346,66 +322,6 @@ impl Samples {
         }
         spectrum
     }
-}
-
-fn draw(named: &Titled, marks: &[Line], upto: Option<f64>) -> anyhow::Result<Figure> {
-    let LineSpectrum { resolution, values } = &named.spectrum;
-    let highest = marks.iter().map(|line| line.frequency).fold(0.0, f64::max);
-    if let Some(upto) = upto {
-        ensure!(upto > 0.0, "--upto is {upto}; expected more than 0");
-    }
-    let end = upto.unwrap_or(10.0 * highest).min(named.spectrum.highest());
-    ensure!(
-        end > 2.0 * resolution,
-        "the record is too short for a figure up to {end} {unit}: its resolution is {resolution:.6} {unit}",
-        unit = named.over.unit
-    );
-    // The mean is taken out: frequency 0 has nothing to show.
-    let last = (end / resolution).floor() as usize;
-    let points: Vec<DataPoint> = (1..=last)
-        .map(|k| DataPoint::new(k as f64 * resolution, named.factor * values[k]))
-        .collect();
-    let top = points.iter().map(|p| p.y).fold(f64::MIN_POSITIVE, f64::max);
-    let low = points
-        .iter()
-        .map(|p| p.y)
-        .filter(|y| *y > 0.0)
-        .fold(top, f64::min);
-    let bottom = if named.is_density { low } else { 0.0 };
-    let mut figure = Figure::new(
-        &named.title,
-        Axis::linear(named.over.name, named.over.unit).tight(),
-        named.axis.clone(),
-    )
-    .note(
-        "Dashed: lines of the bearing and their multiples, from the simulated cage speed; short: sidebands",
-    );
-    let at_height = |height: f64| {
-        if named.is_density {
-            top * (bottom / top).powf(1.0 - height)
-        } else {
-            top * height
-        }
-    };
-    for (place, line) in marks.iter().enumerate() {
-        for (x, is_sideband) in line.family() {
-            if x <= points[points.len() - 1].x {
-                let y = if is_sideband {
-                    at_height(SIDEBAND_HEIGHT)
-                } else {
-                    top
-                };
-                let mark = [bottom, y].map(|y| DataPoint::new(x, y));
-                figure = figure.series(Series::reference("", mark.to_vec()));
-            }
-        }
-        // Names stand one below the other: lines may be close.
-        let y = at_height(1.0 - LABEL_STEP * (place as f64 + 0.5));
-        if line.frequency <= points[points.len() - 1].x {
-            figure = figure.label(DataPoint::new(line.frequency, y), line.name);
-        }
-    }
-    Ok(figure.series(Series::line("", points)))
 }
 
 fn write_table(path: &Path, named: &Titled) -> anyhow::Result<()> {
@@ -450,5 +366,23 @@ fn say(out: &Path, named: &Titled, marks: &[Line]) {
                 at(sign, line.frequency + side);
             }
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Wrong: a density over orders would have a unit over 1.
+    #[test]
+    fn a_density_over_orders_has_the_square_of_a_unit() {
+        let orders = Abscissa {
+            unit: "1",
+            ..FREQUENCY
+        };
+        assert_eq!(density_unit("µm", FREQUENCY), "(µm)²/Hz");
+        assert_eq!(density_unit("µm", orders), "(µm)²");
+        assert_eq!(density_unit("1", FREQUENCY), "1/Hz");
+        assert_eq!(density_unit("1", orders), "1");
     }
 }
