@@ -16,16 +16,34 @@ fn swept() -> Dir {
     flexible_pair(&sweep)
 }
 
-/// Wrong: points that are solved at the same time would start from what happens to be there.
+/// Wrong: points that are solved at the same time would start from what happens to be there; or a reader would see
+/// round-off in the place of values, and the line of the shaft without the point whose it is.
 #[test]
 fn points_of_a_list_have_the_same_bits_on_any_number_of_threads() {
     let dir = swept();
     for threads in ["1", "2", "4"] {
-        succeeds(
+        let said = succeeds(
             &dir,
             &["run", "pair.toml", "--out", threads, "--threads", threads],
         );
+        // 15 um, without the round-off of the unit.
+        assert!(
+            said.stderr.contains("bearings at pairing.offset_m = 0.000015\n"),
+            "{}",
+            said.stderr
+        );
+        assert!(
+            said.stdout.contains("                    0.000015 "),
+            "{}",
+            said.stdout
+        );
     }
+    succeeds(&dir, &["plot", "1"]);
+    let line = dir.text("1/figures/shaft_line.svg");
+    assert!(
+        line.contains("At the last point of the sweep: "),
+        "the figure names no point"
+    );
     for name in [
         "bearings.csv",
         "shaft.csv",
