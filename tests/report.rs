@@ -1,5 +1,7 @@
 //! The page of a run through the whole program.
 
+use checkpoint::FolderLock;
+
 use crate::plot::plotted;
 use crate::util::tables::summary;
 
@@ -64,15 +66,33 @@ fn the_page_of_a_run_stands_alone() {
     }
 }
 
-/// Wrong: a run that has not ended would get a page without its end.
+/// Wrong: a run that has not ended would get a page without its end, or nobody would be told that it goes on.
 #[test]
 fn a_folder_without_a_summary_is_refused() {
     let dir = plotted();
     std::fs::remove_file(dir.path("sweep/summary.json")).unwrap();
     let outcome = dir.raceway(&["report", "sweep"]);
     assert_eq!(outcome.code, Some(2));
-    let expected = "sweep has no summary.json; expected the results of a run that has ended";
+    let expected = "sweep has no summary.json; expected the results of a run that has ended; if it was killed, raceway \
+                    resume sweep goes on with a run over time, and says of others what to do";
     assert!(outcome.stderr.contains(expected), "{}", outcome.stderr);
+    // Not of a folder without a step, and not while it runs.
+    let lock = FolderLock::acquire(&dir.path("sweep")).unwrap();
+    let outcome = dir.raceway(&["report", "sweep"]);
+    assert!(
+        outcome.stderr.contains("still writes to it"),
+        "{}",
+        outcome.stderr
+    );
+    assert!(!outcome.stderr.contains("resume"), "{}", outcome.stderr);
+    drop(lock);
+    std::fs::create_dir(dir.path("empty")).unwrap();
+    let outcome = dir.raceway(&["report", "empty"]);
+    assert!(
+        outcome.stderr.ends_with("of a run that has ended\n"),
+        "{}",
+        outcome.stderr
+    );
 }
 
 /// Wrong: what could not be drawn would take the page and all other figures with it, or be missing without a word.

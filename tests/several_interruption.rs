@@ -83,6 +83,33 @@ fn a_list_that_ended_before_its_first_step_is_run_again() {
     }
 }
 
+/// Wrong: modes of a list that were killed as they were written would leave a folder that is refused as results. The
+/// limit is as above: no mesh file fits, or no mode of the second bearing.
+#[test]
+fn modes_of_a_list_that_ended_early_are_run_again() {
+    let dir = pair("[modes]\nnumber = 2\n");
+    let run = |out: &'static str| ["run", "pair.toml", "--out", out];
+    succeeds(&dir, &run("whole"));
+    for (limit, out) in [(1, "early"), (16, "late"), (16, "alone")] {
+        let outcome = dir.raceway_with_small_files(limit, &run(out));
+        assert_eq!(outcome.code, Some(2), "{}", outcome.stderr);
+        assert!(outcome.stderr.contains("File too large"), "{}", outcome.stderr);
+        if out == "alone" {
+            let step = "front/step_000001.hdf";
+            let [from, to] = ["whole", "alone"].map(|out| dir.path(&format!("{out}/{step}")));
+            std::fs::copy(from, to).unwrap();
+            std::fs::remove_file(dir.path("alone/front/.raceway.starting")).unwrap();
+        }
+        let said = succeeds(&dir, &run(out)).stderr;
+        let expected = format!("the run in {out} ended before its first step was whole in all bearings");
+        assert!(said.contains(&expected), "{said}");
+        for name in ["modes.csv", "mode_shaft.csv", "shaft.csv", "rear/modes.csv"] {
+            let text = |out: &str| dir.text(&format!("{out}/{name}"));
+            assert_eq!(text(out), text("whole"), "{out}/{name}");
+        }
+    }
+}
+
 /// Wrong: a run would begin where results or files of the user are, and replace them.
 #[test]
 fn a_list_begins_only_where_nothing_is_lost() {

@@ -48,6 +48,7 @@ fn stiffness_of_a_sweep_of_the_offset_stands_over_the_preload() {
         preload[1]
     );
     assert!(said.stdout.contains(&line), "{}", said.stdout);
+    assert!(said.stdout.contains(" 0.0000201  front "), "{}", said.stdout);
     // The figure has the force on its axis, and no offset.
     let figure = dir.text("k/stiffness.svg");
     assert!(

@@ -16,16 +16,34 @@ fn swept() -> Dir {
     flexible_pair(&sweep)
 }
 
-/// Wrong: points that are solved at the same time would start from what happens to be there.
+/// Wrong: points that are solved at the same time would start from what happens to be there; or a reader would see
+/// round-off in the place of values, and the line of the shaft without the point whose it is.
 #[test]
 fn points_of_a_list_have_the_same_bits_on_any_number_of_threads() {
     let dir = swept();
     for threads in ["1", "2", "4"] {
-        succeeds(
+        let said = succeeds(
             &dir,
             &["run", "pair.toml", "--out", threads, "--threads", threads],
         );
+        // 15 um, without the round-off of the unit.
+        assert!(
+            said.stderr.contains("bearings at pairing.offset_m = 0.000015\n"),
+            "{}",
+            said.stderr
+        );
+        assert!(
+            said.stdout.contains("                    0.000015 "),
+            "{}",
+            said.stdout
+        );
     }
+    succeeds(&dir, &["plot", "1"]);
+    let line = dir.text("1/figures/shaft_line.svg");
+    assert!(
+        line.contains("At the last point of the sweep: "),
+        "the figure names no point"
+    );
     for name in [
         "bearings.csv",
         "shaft.csv",
@@ -46,7 +64,7 @@ fn points_of_a_list_have_the_same_bits_on_any_number_of_threads() {
 }
 
 /// Wrong: jobs that share a sweep of a list would solve other points than the whole sweep has, or number them
-/// otherwise; `resume` would send a user off to solve all of them again.
+/// otherwise; `resume` would say that points are there which are missing, or send a user off to solve all again.
 #[test]
 fn points_of_a_list_can_be_solved_apart() {
     let dir = swept();
@@ -58,13 +76,11 @@ fn points_of_a_list_can_be_solved_apart() {
         assert_eq!(refused.code, Some(2));
         assert!(refused.stderr.contains(expected), "{}", refused.stderr);
     };
-    rest(
-        "whole",
-        "can be resumed; its points up to the last, 10, are there",
-    );
+    rest("whole", "can be resumed; points 0-10 are there\n");
     rest(
         "part",
-        "its points up to 9 are there, and the same command with --points 10-10 and another --out",
+        "can be resumed; points 7-9 are there, points 0-6, 10 are missing; the same command with --points 0-6, with \
+         --points 10, each with another --out, computes the missing ones",
     );
     for bearing in ["front", "rear"] {
         let table = |out: &str| Table::read(&dir, &format!("{out}/{bearing}/balls.csv"));

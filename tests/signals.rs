@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use crate::util::tables::Table;
-use crate::util::{Dir, RIGID, with_line};
+use crate::util::{Dir, Files, RIGID, with_line};
 
 /// A run-up from 1200 to 3600 rpm within 0.1 s, of a heavy damped shaft over an outer spall, with a tachometer.
 const RUN_UP: &str = "[speed]\ninner = { ramp = { from = \"1200 rpm\", to = \"3600 rpm\", \
@@ -326,6 +326,50 @@ fn kinds_of_spectra_have_files_of_their_own() {
         let table = dir.text(&format!("out/spectrum_x{kind}.csv"));
         assert!(table.starts_with(&format!("frequency_hz,{column}\n")), "{kind}");
     }
+}
+
+/// Wrong: what commands make of a run could only stand in its folder; two bands or spans would replace each other, or
+/// `--out` the files of another run.
+#[test]
+fn what_is_made_of_a_run_goes_where_it_is_asked_for() {
+    let motion = "[speed]\ninner = \"1800 rpm\"\n\n[quasi_static]\nduration = \"10 ms\"\nstep = \"100 us\"\n";
+    let dir = Dir::with_scene(&with_line("[static]", "[static]", motion));
+    dir.run("out", &RIGID);
+    let before = dir.snapshot();
+    let arguments = [
+        "spectrum", "out", "--probe", "x_m", "--upto", "900", "--wav", "--csv", "--out",
+    ];
+    let made = dir.raceway(&[&arguments[..], &["new/spectra"]].concat());
+    assert_eq!(made.code, Some(0), "{}", made.stderr);
+    assert!(
+        made.stdout
+            .contains("spectrum_x.csv in new/spectra, figure in new/spectra/figures")
+    );
+    let names = [
+        "spectrum_x.csv",
+        "figures/spectrum_x.svg",
+        "figures/spectrum_x.png",
+        "signal_x.wav",
+        "signal_x.wav.toml",
+        "signal_x.csv",
+    ];
+    for name in names {
+        assert!(dir.path("new/spectra").join(name).exists(), "{name}");
+        // Any of them alone is in the way, and nothing is written beside it.
+        let folder = format!("other_{}", name.replace('/', "_"));
+        std::fs::create_dir_all(dir.path(&folder).join("figures")).unwrap();
+        dir.write(&format!("{folder}/{name}"), "mine");
+        let refused = dir.raceway(&[&arguments[..], &[&folder]].concat());
+        assert_eq!(refused.code, Some(2), "{name}: {}", refused.stdout);
+        assert!(refused.stderr.contains(name), "{name}: {}", refused.stderr);
+        assert_eq!(dir.text(&format!("{folder}/{name}")), "mine");
+        let beside = std::fs::read_dir(dir.path(&folder)).unwrap().count();
+        assert_eq!(beside, if name.starts_with("figures") { 1 } else { 2 }, "{name}");
+    }
+    let again = dir.raceway(&[&arguments[..], &["new/spectra"]].concat());
+    assert_eq!(again.code, Some(2), "{}", again.stdout);
+    let out = |files: &Files| files.iter().filter(|(name, _)| name.starts_with("out")).count();
+    assert_eq!(out(&before), out(&dir.snapshot()));
 }
 
 /// Wrong: points of a sweep would be taken for seconds, by a spectrum and by its lines of the bearing.

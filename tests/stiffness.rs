@@ -97,6 +97,15 @@ fn a_sweep_has_a_line_per_point_and_figures() {
     let dir = Dir::with_scene(&with_line("[static]", "[static]", sweep));
     let (outcome, json) = found(&dir, "k", &RIGID);
     assert_eq!(json["sweep"]["column"], "speed.inner_rad_per_s");
+    // Without the round-off of the unit.
+    assert!(outcome.stdout.contains(" 4188.79  "), "{}", outcome.stdout);
+    assert!(
+        outcome
+            .stderr
+            .contains("contacts at speed.inner_rad_per_s = 4188.79\n"),
+        "{}",
+        outcome.stderr
+    );
     let table = Table::read(&dir, "k/stiffness.csv");
     assert_eq!(
         table.columns[..5],

@@ -10,7 +10,7 @@ use crate::remarks::SECTION;
 use crate::util::tables::{Table, number};
 use crate::util::{Dir, Files, assert_within, with_line};
 
-const STUDY: &str = include_str!("fixtures/study.toml");
+pub const STUDY: &str = include_str!("fixtures/study.toml");
 const DYNAMIC: &str = "[dynamic]\nduration = \"0.2 ms\"\nstep = \"4 us\"\noutput_every = 1000";
 
 /// A folder with the scene and the study.

@@ -1,6 +1,6 @@
 //! Studies of scenes whose files change.
 
-use crate::study::{studied, table};
+use crate::study::{STUDY, inputs, studied, table};
 use crate::util::delivered::coarse;
 use crate::util::{Dir, Outcome};
 
@@ -17,7 +17,7 @@ fn a_study_refuses_points_of_files_that_have_changed() {
         "scene = \"scenes/7010c_1800rpm_quasi_static_coarse.toml\"\nset = ['quasi_static.duration = \"0.2 ms\"', \
          'outer.mesh = \"{out}/outer.msh\"']\n[[axes]]\nname = \"load\"\nvalues = [{ name = \"a\", set = \
          ['effects.axial_force.value = \"1 kN\"'] }]\n[[quantities]]\nname = \"force\"\nunit = \"N\"\nsummary = \
-         \"/largest_contact_force_n\"\n",
+         \"/balls/0/inner/force_n\"\n",
     );
     std::fs::create_dir_all(dir.path("out")).unwrap();
     let mesh = std::fs::read(dir.path("meshes/7010c_outer_coarse.msh")).unwrap();
@@ -91,4 +91,49 @@ fn rows_of_several_balls_at_a_time_are_compared_ball_by_ball() {
     let told = "force: balls.csv has 18 rows at the last time, and take = \"final\" is one of them; say which by \
                 where, such as where = { ball = 0 }, or take another number of all, such as \"max\"";
     assert!(last.contains(told), "{last}");
+}
+
+/// Wrong: a column that is mistyped would be told after hours of runs; or what has been computed would be lost, or a
+/// study refused where only some points have a number.
+#[test]
+fn a_quantity_that_is_mistyped_is_told_after_the_first_point() {
+    let dir = inputs();
+    let text = "quantity \"history\": shaft.csv has no column \"x\"; columns are step, time_s, x_m";
+    let mistyped = STUDY.replace("column = \"x_m\"", "column = \"x\"");
+    dir.write("study.toml", &mistyped);
+    let refused = study(&dir);
+    assert_eq!(refused.code, Some(2), "{}", refused.stdout);
+    for said in [
+        text,
+        "point 0 is the first that has finished",
+        "the same command goes on",
+    ] {
+        assert!(refused.stderr.contains(said), "{said}: {}", refused.stderr);
+    }
+    let ran = |index: usize| dir.path(&format!("out/points/{index:04}/point.json")).exists();
+    assert!(ran(0) && !ran(1));
+    // Again: before any run.
+    let refused = study(&dir);
+    assert!(refused.code == Some(2) && refused.stderr.contains(text) && !ran(1));
+    let signals = "[signals]\ntable = \"shaft.csv\"\ncolumns = [\"y\"]\n";
+    dir.write("study.toml", format!("{STUDY}\n{signals}"));
+    let refused = study(&dir);
+    assert!(refused.code == Some(2) && !ran(1), "{}", refused.stderr);
+    assert!(refused.stderr.contains("[signals]: "), "{}", refused.stderr);
+    let other = STUDY.replace("table = \"shaft.csv\"", "table = \"shafts.csv\"");
+    dir.write("study.toml", other);
+    let refused = study(&dir);
+    let text = "run/shafts.csv is not there; tables there are balls.csv, energy.csv, shaft.csv";
+    assert!(refused.stderr.contains(text) && !ran(1), "{}", refused.stderr);
+    let record = dir.text("out/points/0000/point.json");
+    let optional = "take = \"history\"\noptional = true";
+    dir.write("study.toml", mistyped.replace("take = \"history\"", optional));
+    let all = study(&dir);
+    assert_eq!(all.code, Some(0), "{}", all.stderr);
+    assert!(
+        all.stdout.contains("history: shaft.csv has no column \"x\""),
+        "{}",
+        all.stdout
+    );
+    assert_eq!(dir.text("out/points/0000/point.json"), record);
 }

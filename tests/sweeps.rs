@@ -389,10 +389,9 @@ fn a_sweep_stops_at_a_signal_and_names_the_points_that_are_left() {
     let expected = "out holds results of a [sweep] scene; only a run over time";
     assert!(resumed.stderr.contains(expected), "{}", resumed.stderr);
     let rest = format!(
-        "can be resumed; its points up to {} are there, and the same command with --points {solved}-{} and another \
-         --out computes the others",
-        solved - 1,
-        POINTS - 1
+        "are there, points {solved}-{last} are missing; the same command with --points {solved}-{last}, and another \
+         --out, computes the missing ones",
+        last = POINTS - 1
     );
     assert!(resumed.stderr.contains(&rest), "{}", resumed.stderr);
     // A point is no instant.

@@ -15,6 +15,7 @@ use dynamics::kinematics::Speed;
 use dynamics::whirl::{TurningShaft, WhirlMode, turning_inertia};
 use dynamics::{Linearisation, Model, ShaftDof, StaticSolution, StaticSolver};
 use results::campbell::{CAMPBELL_LINES, CAMPBELL_TABLE, ModesAtSpeed};
+use results::console::digits;
 use results::failure::Failure;
 use results::survey::say_doubts;
 use results::whole::require_free;
@@ -190,8 +191,8 @@ fn diagram(
     let mut solver = StaticSolver::new(&model).map_err(Failure::solving)?;
     let (mut found, mut before, mut is_warned) = (Vec::new(), None, false);
     for rpm in speeds {
-        let at = |failure: Failure| failure.context(format!("{rpm} rpm"));
-        progress.stage(&format!("{rpm} rpm"));
+        let at = |failure: Failure| failure.context(format!("{} rpm", digits(rpm)));
+        progress.stage(&format!("{} rpm", digits(rpm)));
         let mut rings = scene.speed.clone().unwrap_or_default();
         rings.inner = Speed::constant(rpm * PI / 30.0);
         let speeds = Side::BOTH.map(|side| rings.of(side).at(time));
@@ -217,7 +218,7 @@ fn diagram(
                 solution
                     .warnings
                     .iter()
-                    .map(|w| format!("from {rpm} rpm on: {w}")),
+                    .map(|w| format!("from {} rpm on: {w}", digits(rpm))),
             );
             is_warned = !solution.warnings.is_empty();
         }

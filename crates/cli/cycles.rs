@@ -15,7 +15,7 @@ use results::whole;
 
 /// Table that is read.
 const PROBES: &str = "probes.csv";
-/// Tables that are written into the folder.
+/// Tables that are written.
 const RANGES: &str = "stress_ranges.csv";
 const CYCLES: &str = "stress_cycles.csv";
 
@@ -33,6 +33,9 @@ pub struct Cycles {
     /// Swings up to this share of a stress's whole range are not counted as cycles.
     #[arg(long, default_value_t = 0.01)]
     least: f64,
+    /// Folder of the tables; default: the folder of the results. Nothing in it is replaced.
+    #[arg(long)]
+    out: Option<PathBuf>,
 }
 
 /// Histories of the stresses of a run.
@@ -88,8 +91,9 @@ pub fn cycles(request: &Cycles) -> Result<(), Failure> {
             counted.write_record(row)?;
         }
     }
-    write(dir, RANGES, &RANGE_COLUMNS, ranges)?;
-    write(dir, CYCLES, &CYCLE_COLUMNS, counted)?;
+    let out = whole::output_folder(request.out.as_deref(), dir, &[RANGES, CYCLES])?;
+    write(out, RANGES, &RANGE_COLUMNS, ranges)?;
+    write(out, CYCLES, &CYCLE_COLUMNS, counted)?;
     let span = match swept_column(dir)? {
         Some(_) => format!("point {first} to point {last} of the sweep"),
         None => format!("{first} s to {last} s"),
@@ -97,7 +101,7 @@ pub fn cycles(request: &Cycles) -> Result<(), Failure> {
     print::line(format_args!(
         "{} stresses from {span}: {RANGES} and {CYCLES} in {}",
         histories.columns.len(),
-        dir.display()
+        out.display()
     ));
     Ok(())
 }

@@ -17,13 +17,13 @@ use results::probe_places::side_of;
 use results::shown::Shown;
 use results::survey::say_doubts;
 use results::table::Table;
-use results::whole::{make_asked_folder, require_free, write};
+use results::whole::{make_asked_folder, output_folder, require_free, write};
 use scene::{Analysis, Scene, build_model, doubts};
 use spectrum::scene_of;
 
 use crate::stiffness::{instant, pose_at};
 
-/// Table that is written into the folder of the run.
+/// Table of ball loads.
 const LOADS: &str = "ball_loads.csv";
 
 /// What the command line asks for.
@@ -53,6 +53,9 @@ pub struct BallLoadsCommand {
     /// The load_matrix.json of raceway load-matrix.
     #[arg(long)]
     matrix: PathBuf,
+    /// Folder of ball_loads.csv; default: the folder of the results. Nothing in it is replaced.
+    #[arg(long)]
+    out: Option<PathBuf>,
 }
 
 /// Solves the equilibrium and writes its matrix.
@@ -219,8 +222,8 @@ pub fn ball_loads(command: &BallLoadsCommand) -> Result<(), Failure> {
         );
     }
     require_steps(&found, &probes, &matrix, command)?;
-    let path = dir.join(LOADS);
-    write(&path, found.table.as_bytes(), |old| {
+    let out = output_folder(command.out.as_deref(), dir, &[LOADS])?;
+    write(&out.join(LOADS), found.table.as_bytes(), |old| {
         old.starts_with(head.as_bytes())
     })?;
     print::line(format_args!(
@@ -228,7 +231,7 @@ pub fn ball_loads(command: &BallLoadsCommand) -> Result<(), Failure> {
         counted(probes.n_rows() - found.left_out, "step"),
         found.left_out,
         deviation(found.worst / found.largest.max(f64::MIN_POSITIVE)),
-        dir.display()
+        out.display()
     ));
     Ok(())
 }

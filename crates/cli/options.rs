@@ -1,5 +1,6 @@
 //! What the command line says about a run besides its scene.
 
+use std::fmt;
 use std::ops::Range;
 use std::path::Path;
 use std::time::Duration;
@@ -28,7 +29,37 @@ pub struct SweepPart {
     last: usize,
 }
 
+impl fmt::Display for SweepPart {
+    /// As `--points` takes it.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.first == self.last {
+            true => write!(f, "{}", self.first),
+            false => write!(f, "{}-{}", self.first, self.last),
+        }
+    }
+}
+
 impl SweepPart {
+    /// The parts that numbers make up; they grow.
+    pub fn of_numbers(numbers: impl IntoIterator<Item = usize>) -> Vec<SweepPart> {
+        let mut parts: Vec<SweepPart> = Vec::new();
+        for number in numbers {
+            match parts.last_mut() {
+                Some(part) if part.last + 1 == number => part.last = number,
+                _ => parts.push(SweepPart {
+                    first: number,
+                    last: number,
+                }),
+            }
+        }
+        parts
+    }
+
+    /// How many points it has.
+    pub fn n_points(self) -> usize {
+        self.range().len()
+    }
+
     /// The points as a range.
     pub fn range(self) -> Range<usize> {
         self.first..self.last + 1
@@ -77,6 +108,17 @@ pub fn parse_part(text: &str) -> Result<SweepPart, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// Wrong: a user would be told to compute points that are there, or not all of those that are missing.
+    #[test]
+    fn numbers_make_up_parts_as_points_takes_them() {
+        let parts = SweepPart::of_numbers([0, 1, 2, 5, 7, 8]);
+        let texts: Vec<String> = parts.iter().map(SweepPart::to_string).collect();
+        assert_eq!(texts, ["0-2", "5", "7-8"]);
+        let again: Result<Vec<SweepPart>, String> = texts.iter().map(|text| parse_part(text)).collect();
+        assert_eq!(again, Ok(parts));
+        assert!(SweepPart::of_numbers([]).is_empty());
+    }
 
     /// Wrong: a job of an array would solve other points than it was given.
     #[test]

@@ -7,6 +7,7 @@
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
+use std::slice;
 use std::time::Instant;
 
 use anyhow::{Context, anyhow};
@@ -123,7 +124,7 @@ fn read(request: &ResumeRequest, step: u64) -> Result<Read, Failure> {
         ));
     }
     let scene = scene_of(request, &record, &about)?;
-    let course = OverTime::of(&scene.analysis, dir, step)?;
+    let course = OverTime::of(&scene.analysis, dir, slice::from_ref(dir))?;
     require_named_files(&scene, &about)?;
     course.require_step(step, &format!("{step}, t = {} s", record.time))?;
     Ok(Read {
@@ -276,8 +277,7 @@ fn require_same_file(path: &Path, overrides: &[String], (stored, dir): (&str, &P
     }
     // Each step of a sweep holds the scene of its point.
     if !changes.iter().any(|change| change.is_below(&OverTime::TABLES)) {
-        let newest = checkpoint::all_steps(dir)?.last().copied().unwrap_or(0);
-        OverTime::of(&now.analysis, dir, newest)?;
+        OverTime::of(&now.analysis, dir, &[dir.to_path_buf()])?;
     }
     Err(anyhow!(
         "the scene file {} has changed since the run: {}; put it back, or go on with the scene of the run: \

@@ -8,6 +8,7 @@ use anyhow::anyhow;
 use contact::{BearingGeometry, Side};
 use dynamics::points::{PointStart, SolvedPoint, points_per_start};
 use dynamics::{Model, Pose, StaticSolution, StaticSolver};
+use results::console::at_value;
 use results::disk::Forecast;
 use results::failure::{Failure, agree, of_all};
 use results::files::Files;
@@ -410,7 +411,7 @@ fn findings(scene: &Scene, solutions: &[Solved], ended: &Result<(), Failure>, re
 /// Warnings of one point; in a sweep they say which.
 fn warnings(scene: &Scene, Solved { value, solution, .. }: &Solved) -> Vec<String> {
     let at = match &scene.analysis {
-        Analysis::Sweep(sweep) => format!("{} = {value}: ", sweep.column),
+        Analysis::Sweep(sweep) => format!("{}: ", at_value(&sweep.column, *value)),
         _ => String::new(),
     };
     solution.warnings.iter().map(|w| format!("{at}{w}")).collect()
@@ -446,7 +447,7 @@ pub fn points(scene: &Scene) -> Result<Vec<SweptScene>, Failure> {
 /// What is computed at a point, for progress.
 pub fn stage_text(scene: &Scene, value: Option<f64>) -> String {
     match (&scene.analysis, value) {
-        (Analysis::Sweep(sweep), Some(value)) => format!("contacts at {} = {value}", sweep.column),
+        (Analysis::Sweep(sweep), Some(value)) => format!("contacts at {}", at_value(&sweep.column, value)),
         _ => "contacts".to_string(),
     }
 }
@@ -455,11 +456,11 @@ fn at_point(failure: Failure, scene: &Scene, value: Option<f64>, dir: &Path, don
     let (Analysis::Sweep(sweep), Some(value)) = (&scene.analysis, value) else {
         return failure;
     };
+    let at = at_value(&sweep.column, value);
     let context = match done {
-        0 => format!("{} = {value}, the first point of the sweep", sweep.column),
+        0 => format!("{at}, the first point of the sweep"),
         _ => format!(
-            "{} = {value} failed after {done} finished points, which are kept in {}",
-            sweep.column,
+            "{at} failed after {done} finished points, which are kept in {}",
             dir.display()
         ),
     };

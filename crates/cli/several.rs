@@ -6,6 +6,7 @@ use anyhow::anyhow;
 use assembly::{Assembly, AssemblyError, AssemblySolution, AssemblySolver};
 use comm::Communicator;
 use contact::Side;
+use results::console::at_value;
 use results::failure::Failure;
 use results::files::say_folder;
 use results::list_folder::ListStart;
@@ -22,7 +23,7 @@ pub type SeveralPoint = (Option<f64>, SeveralScene);
 
 /// What a message on a point of a sweep begins with; empty without a sweep.
 pub fn words_of(column: Option<&str>, value: Option<f64>) -> String {
-    let words = |(column, value): (&str, f64)| format!("{column} = {value}: ");
+    let words = |(column, value)| format!("{}: ", at_value(column, value));
     column.zip(value).map_or(String::new(), words)
 }
 
@@ -138,7 +139,7 @@ pub fn solving(error: AssemblyError) -> Failure {
 /// A failure with the point of a sweep.
 pub fn at_point(failure: Failure, column: Option<&str>, value: Option<f64>) -> Failure {
     match column.zip(value) {
-        Some((column, value)) => failure.context(format!("{column} = {value}")),
+        Some((column, value)) => failure.context(at_value(column, value)),
         None => failure,
     }
 }
@@ -146,7 +147,7 @@ pub fn at_point(failure: Failure, column: Option<&str>, value: Option<f64>) -> F
 /// What is computed at a point, for progress.
 pub fn stage_text(column: Option<&str>, value: Option<f64>) -> String {
     match column.zip(value) {
-        Some((column, value)) => format!("bearings at {column} = {value}"),
+        Some((column, value)) => format!("bearings at {}", at_value(column, value)),
         None => "bearings".to_string(),
     }
 }

@@ -98,14 +98,21 @@ fn write(
     let begun = make_folder(scene, dir)?;
     let shown = ListState::of_equilibrium(assembly, solution);
     let mut tables = SeveralTables::create(dir, None, &shown)?;
+    // All folders are there, and say that they have begun, before the first has a mode: what a run leaves that is
+    // killed here is known as such.
+    let mut begun_files = Vec::new();
+    for (i, bearing) in scene.bearings.iter().enumerate() {
+        let placed = placed(&bearing.scene, &solution.bearings[i])?;
+        let files = ModeFiles::create_part(&placed, &assembly.bearings[i].model, &dir.join(&bearing.name))?;
+        begun_files.push((placed, files));
+    }
     begun.end()?;
     tables.append((0, 0.0), None, assembly, &shown)?;
     write_tables_of_several(dir, assembly, found, &free_dofs(assembly))?;
-    for (i, bearing) in scene.bearings.iter().enumerate() {
+    for ((i, bearing), (placed, mut files)) in scene.bearings.iter().enumerate().zip(begun_files) {
         let (model, equilibrium) = (&assembly.bearings[i].model, &solution.bearings[i]);
-        let (own, placed) = (dir.join(&bearing.name), placed(&bearing.scene, equilibrium)?);
+        let own = dir.join(&bearing.name);
         let set: ModeSet = set_of_several(found, |mode| &mode.bearings[i]);
-        let mut files = ModeFiles::create_part(&placed, model, &own)?;
         files.write(&placed, model, ModeBody::Bearing, &set)?;
         let run = files.finish()?;
         let snapshot = Snapshot::of_equilibrium(equilibrium, None);

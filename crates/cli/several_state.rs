@@ -218,7 +218,7 @@ fn read_step(
         .get(OVERRIDES)
         .map_or(Vec::new(), |text| text.lines().map(str::to_string).collect());
     let scene = scene_of(text, &path, &before, changes)?;
-    let course = OverTime::of(&scene.analysis, dir, step)?;
+    let course = OverTime::of(&scene.analysis, dir, folders)?;
     let n_steps = course.n_steps();
     course.require_step(step, &step.to_string())?;
     if step == n_steps && is_list_finished(dir, folders, step)? {

@@ -14,6 +14,7 @@ use contact::Side;
 use dynamics::bodies::AXES;
 use dynamics::stiffness::{ShaftMatrix, softest};
 use dynamics::{Linearisation, Model, Pose, StaticSolution, StaticSolver};
+use results::console::at_value;
 use results::failure::Failure;
 use results::stiffness::{
     NOT_OVER_SPEED, OperatingPoint, ROSS_TABLE, Ripple, STIFFNESS_FILE, STIFFNESS_TABLE, StiffnessAt,
@@ -166,7 +167,7 @@ fn linearise(scene: &Scene, time: f64, ripple: Option<usize>) -> Result<Stiffnes
         model = model_with_rings(&point.1, model.rings)?;
         let found = PointOfScene { point, time, ripple }.linearise(&model, &mut solver, before.as_ref());
         let at = results.column.as_ref().zip(point.0);
-        let at = at.map(|(column, value)| format!("{column} = {value}"));
+        let at = at.map(|(column, value)| at_value(column, value));
         let (found, solution, warnings) = found.map_err(|failure| match &at {
             Some(at) => failure.context(at.clone()),
             None => failure,

@@ -4,7 +4,9 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, anyhow};
-use checkpoint::{FolderLock, Stamps, StateArray, StepRecord};
+use checkpoint::{
+    FolderLock, Stamps, StateArray, StepRecord, all_steps, require_run, run_of, step_file_name,
+};
 use comm::print;
 use dynamics::motion::{Motion, MotionState};
 use results::answer;
@@ -15,6 +17,8 @@ use results::state_arrays::{self, Arrays};
 use results::summary::read_summary;
 use results::watch::Watch;
 use scene::{Analysis, Dynamic, QuasiStatic};
+
+use crate::options::SweepPart;
 
 /// Array of a step file that counts Newton's iterations since the start of the run.
 const NEWTON: &str = "newton_iterations";
@@ -34,28 +38,40 @@ impl OverTime {
     /// The tables of scenes that say how long they go.
     pub const TABLES: [&str; 2] = ["dynamic", "quasi_static"];
 
-    /// That of an analysis, whose results are in a folder with the newest step `newest`.
-    pub fn of(analysis: &Analysis, dir: &Path, newest: u64) -> Result<OverTime, Failure> {
+    /// That of an analysis, whose results are in `dir`, with the step files of each bearing in one of `folders`.
+    pub fn of(analysis: &Analysis, dir: &Path, folders: &[PathBuf]) -> Result<OverTime, Failure> {
         let kind = match analysis {
             Analysis::Dynamic(dynamic) => return Ok(OverTime::Motion(*dynamic)),
             Analysis::QuasiStatic(settings) => return Ok(OverTime::Equilibria(*settings)),
             Analysis::Static => "[static]",
-            Analysis::Sweep(sweep) => return Err(OverTime::rest_of_sweep(sweep.points.len(), dir, newest)),
+            Analysis::Sweep(sweep) => {
+                let is_there = points_there(sweep.points.len(), folders)?;
+                return Err(OverTime::rest_of_sweep(&is_there, dir));
+            }
             Analysis::Modes(_) => "[modes]",
         };
         Err(OverTime::none_of(kind, dir))
     }
 
-    /// Why a sweep of so many points is not gone on with, and how to have those after the newest.
-    fn rest_of_sweep(n_points: usize, dir: &Path, newest: u64) -> Failure {
-        let last = n_points as u64 - 1;
-        let rest = match newest < last {
-            true => format!(
-                "its points up to {newest} are there, and the same command with --points {}-{last} and another --out \
-                 computes the others",
-                newest + 1
-            ),
-            false => format!("its points up to the last, {last}, are there"),
+    /// Why a sweep is not gone on with, which of its points are there, and how to have the others.
+    fn rest_of_sweep(is_there: &[bool], dir: &Path) -> Failure {
+        let parts_where = |there: bool| {
+            let numbers = is_there.iter().enumerate().filter(|(_, is)| **is == there);
+            SweepPart::of_numbers(numbers.map(|(number, _)| number))
+        };
+        let missing = parts_where(false);
+        let rest = match missing.is_empty() {
+            true => format!("{} there", points_are(&parts_where(true))),
+            false => {
+                let calls: Vec<String> = missing.iter().map(|part| format!("--points {part}")).collect();
+                let each = if calls.len() > 1 { "each with" } else { "and" };
+                format!(
+                    "{} there, {} missing; the same command with {}, {each} another --out, computes the missing ones",
+                    points_are(&parts_where(true)),
+                    points_are(&missing),
+                    calls.join(", with ")
+                )
+            }
         };
         anyhow!(
             "{} holds results of a [sweep] scene; only a run over time, a scene with [dynamic] or [quasi_static], can \
@@ -136,6 +152,37 @@ pub fn is_finished(dir: &Path, step: u64) -> Result<bool, Failure> {
     let is_whole = dir.join("run.vtkhdf").exists() && checkpoint::read_mesh(dir).is_ok();
     // Tables that are not as written are refused, or cut, where a run goes on.
     Ok(newest && finished && is_whole && doubts(dir)?.is_empty())
+}
+
+/// Which of so many points of a sweep have whole step files in all `folders`, packed or not.
+fn points_there(n_points: usize, folders: &[PathBuf]) -> Result<Vec<bool>, Failure> {
+    let mut times_there = vec![0; n_points];
+    for folder in folders {
+        let run = run_of(folder)?;
+        for step in all_steps(folder)? {
+            let path = folder.join(step_file_name(step));
+            let is_whole = !path.exists() || require_run(&path, run.as_deref()).is_ok();
+            if let Some(times) = times_there.get_mut(step as usize)
+                && is_whole
+            {
+                *times += 1;
+            }
+        }
+    }
+    Ok(times_there
+        .into_iter()
+        .map(|times| times == folders.len())
+        .collect())
+}
+
+/// The points of some parts as the subject of a sentence, with its verb.
+fn points_are(parts: &[SweepPart]) -> String {
+    let texts: Vec<String> = parts.iter().map(SweepPart::to_string).collect();
+    match parts.iter().map(|part| part.n_points()).sum::<usize>() {
+        0 => "none of its points is".to_string(),
+        1 => format!("point {} is", texts.join("")),
+        _ => format!("points {} are", texts.join(", ")),
+    }
 }
 
 /// A step to go on from.

@@ -91,11 +91,20 @@ impl Axis {
 
     /// A value of this axis in words: name, number, unit.
     pub fn value(&self, value: f64) -> String {
-        let number = format!("{value:.4}");
+        // Neither a long row of zeros nor nothing but zeros.
+        let is_plain = value == 0.0 || (1e-3..1e9).contains(&value.abs());
+        let (number, power) = match is_plain {
+            true => (format!("{value:.4}"), String::new()),
+            false => match format!("{value:.4e}").split_once('e') {
+                Some((number, power)) => (number.to_string(), format!("e{power}")),
+                None => (value.to_string(), String::new()),
+            },
+        };
         let number = match number.contains('.') {
             true => number.trim_end_matches('0').trim_end_matches('.'),
             false => &number,
         };
+        let number = format!("{number}{power}");
         match self.unit.as_str() {
             "" | "1" => format!("{} {number}", self.name),
             unit => format!("{} {number} {unit}", self.name),

@@ -61,10 +61,7 @@ fn draw_once(figure: &Figure, layout: &Layout) -> Result<Option<String>, FigureE
         let drawn = draw_all(figure, layout, &pen, &canvas).and_then(|()| {
             for ((at, text), place) in points.iter().zip(&places) {
                 let middle = [0.5 * (place.left + place.right), 0.5 * (place.top + place.bottom)];
-                let near = [
-                    at[0].clamp(place.left, place.right),
-                    at[1].clamp(place.top, place.bottom),
-                ];
+                let near = place.nearest(*at);
                 canvas.draw(&PathElement::new(
                     vec![units(*at), units(near)],
                     BLACK.mix(0.5).stroke_width(6),

@@ -29,6 +29,11 @@ impl Rect {
             && other.top < self.bottom
     }
 
+    /// The point of it that is nearest to another.
+    pub fn nearest(&self, [x, y]: [f64; 2]) -> [f64; 2] {
+        [x.clamp(self.left, self.right), y.clamp(self.top, self.bottom)]
+    }
+
     /// Whether `other` lies inside.
     pub fn holds(&self, other: &Rect) -> bool {
         self.left <= other.left

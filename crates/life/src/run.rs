@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 use std::path::Path;
 
-use anyhow::{Context, anyhow, ensure};
+use anyhow::{Context, anyhow, bail, ensure};
 use checkpoint::{all_steps, open_regular, read_any_step};
 use comm::print;
 use contact::Side;
@@ -11,6 +11,7 @@ use dynamics::kinematics::{BothRings, Kinematics, Rolling};
 use results::ball_turns::BallTurns;
 use results::failure::Failure;
 use results::integrity::doubts;
+use results::list_folder::not_ended;
 use results::summary::{SUMMARY_FILE, other_version, require_known_summary};
 use results::table::Table;
 use scene::{Analysis, MeshFiles, Scene, geometry, rolling, speeds, time_below};
@@ -381,11 +382,9 @@ fn require_finished(dir: &Path) -> anyhow::Result<()> {
         dir.display()
     );
     let path = dir.join(SUMMARY_FILE);
-    ensure!(
-        path.exists(),
-        "{} has no {SUMMARY_FILE}; expected the results of a run that has ended",
-        dir.display()
-    );
+    if !path.exists() {
+        bail!(not_ended(dir).text());
+    }
     let text = std::io::read_to_string(open_regular(&path)?)
         .with_context(|| format!("cannot read {}", path.display()))?;
     let summary: serde_json::Value =

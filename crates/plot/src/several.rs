@@ -28,7 +28,12 @@ pub fn figures(dir: &Path) -> anyhow::Result<Vec<(String, Figure)>> {
     else {
         return Ok(found);
     };
-    found.push(("shaft_line".to_string(), line(&shaft, &bearings)?));
+    let line = line(&shaft, &bearings)?;
+    let line = match last_point(&bearings)? {
+        Some(point) => line.note(format!("At the last point of the sweep: {point}")),
+        None => line,
+    };
+    found.push(("shaft_line".to_string(), line));
     found.extend(range(&shaft)?.map(|figure| ("shaft_line_range".to_string(), figure)));
     found.extend(loads(dir, &bearings)?.map(|figure| ("bearing_loads".to_string(), figure)));
     Ok(found)
@@ -39,6 +44,20 @@ fn last_rows(table: &Table) -> anyhow::Result<Vec<usize>> {
     let steps = table.column("step")?;
     let last = steps.iter().copied().fold(0.0, f64::max);
     Ok((0..steps.len()).filter(|&i| steps[i] == last).collect())
+}
+
+/// The last point of a sweep in words; None without one.
+fn last_point(bearings: &Table) -> anyhow::Result<Option<String>> {
+    let Some(column) = swept_column(bearings) else {
+        return Ok(None);
+    };
+    let (axis, x) = axis_of(bearings, column, "step")?;
+    Ok(x.last().map(|x| axis.value(*x)))
+}
+
+/// The column of the swept value, where there is one.
+fn swept_column(bearings: &Table) -> Option<&String> {
+    bearings.names().get(TIME + 1).filter(|name| *name != "bearing")
 }
 
 /// The line of the shaft at the last step.
@@ -120,8 +139,9 @@ fn range(shaft: &Table) -> anyhow::Result<Option<Figure>> {
 
 /// The largest ball force of each bearing over the points of a sweep; none of one point.
 fn loads(dir: &Path, bearings: &Table) -> anyhow::Result<Option<Figure>> {
-    let swept = bearings.names().get(TIME + 1).filter(|name| *name != "bearing");
-    let Some(column) = swept else { return Ok(None) };
+    let Some(column) = swept_column(bearings) else {
+        return Ok(None);
+    };
     let (axis, x): (Axis, Vec<f64>) = axis_of(bearings, column, "step")?;
     let force = NEWTON.of(bearings.column("largest_ball_force_n")?);
     let n = last_rows(bearings)?.len();

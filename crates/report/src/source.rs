@@ -2,12 +2,13 @@
 
 use std::path::Path;
 
-use anyhow::{Context, anyhow};
+use anyhow::Context;
 use checkpoint::{all_steps, open_regular, read_about, read_any_step, step_file_name};
 use comm::print::counted;
 use results::about::COMMIT;
 use results::failure::Failure;
 use results::integrity::doubts;
+use results::list_folder::not_ended;
 use results::summary::{SUMMARY_FILE, other_version, require_known_summary};
 use serde_json::Value;
 
@@ -31,11 +32,7 @@ pub struct ReportedRun {
 pub fn read(dir: &Path) -> Result<ReportedRun, Failure> {
     let path = dir.join(SUMMARY_FILE);
     if !path.exists() {
-        return Err(anyhow!(
-            "{} has no {SUMMARY_FILE}; expected the results of a run that has ended",
-            dir.display()
-        )
-        .into());
+        return Err(not_ended(dir));
     }
     let file = open_regular(&path)?;
     let text = std::io::read_to_string(file).with_context(|| format!("cannot read {}", path.display()))?;

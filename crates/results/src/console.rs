@@ -88,11 +88,25 @@ pub fn fixed<const N: usize>(x: f64) -> String {
     }
 }
 
-/// A number of the scene with as many digits as it was typed with, not those of its unit's factor: seven at most.
-fn digits(x: f64) -> String {
+/// A number of the scene with as many digits as it was typed with, not those of its unit's factor: seven at most, and
+/// no long row of zeros.
+pub fn digits(x: f64) -> String {
     let rounded: f64 = format!("{x:.6e}").parse().unwrap_or(x);
-    rounded.to_string()
+    match rounded == 0.0 || (LEAST_PLAIN..MOST_PLAIN).contains(&rounded.abs()) {
+        true => rounded.to_string(),
+        false if rounded.is_finite() => format!("{rounded:e}"),
+        false => rounded.to_string(),
+    }
 }
+
+/// A point of a sweep in words: the column of the swept value, and the value.
+pub fn at_value(column: &str, value: f64) -> String {
+    format!("{column} = {}", digits(value))
+}
+
+/// Numbers from the first to below the second are shown without an exponent.
+const LEAST_PLAIN: f64 = 1e-9;
+const MOST_PLAIN: f64 = 1e15;
 
 #[cfg(test)]
 mod tests {
@@ -109,6 +123,11 @@ mod tests {
             [digits(1256.6370614359173), digits(0.1), digits(2000.0)],
             ["1256.637", "0.1", "2000"]
         );
-        assert_eq!(digits(f64::NAN), "NaN");
+        assert_eq!(
+            [digits(0.1 + 0.2), digits(-14e-6), digits(2.07e11), digits(0.0)],
+            ["0.3", "-0.000014", "207000000000", "0"]
+        );
+        assert_eq!([digits(1e300), digits(-1.5e-12)], ["1e300", "-1.5e-12"]);
+        assert_eq!([digits(f64::NAN), digits(f64::INFINITY)], ["NaN", "inf"]);
     }
 }

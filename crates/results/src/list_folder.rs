@@ -7,13 +7,16 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, anyhow};
-use checkpoint::{CheckpointError, FolderLock, MESH_FILE, begin_anew, is_unfinished_start, lock};
+use checkpoint::{CheckpointError, FolderLock, MESH_FILE, all_steps, begin_anew, is_unfinished_start, lock};
 use comm::{Communicator, print};
+use input::shell_word;
 use scene::{SeveralScene, names_of_bearings};
 
 use crate::failure::Failure;
 use crate::folder::{remove_outdated, start_again};
+use crate::modes::TABLE as MODES_TABLE;
 use crate::several::{BALLS_TABLE, BEARINGS_TABLE, ENERGY_TABLE, SCENE_TEXT, SHAFT_TABLE};
+use crate::several_modes::SHAFT_TABLE as MODE_SHAFT_TABLE;
 use crate::summary::SUMMARY_FILE;
 use crate::whole::{make_asked_folder, require_free, write_new};
 
@@ -21,7 +24,15 @@ use crate::whole::{make_asked_folder, require_free, write_new};
 const STARTING: &str = ".raceway.starting_list";
 
 /// What a run makes beside the folders of its bearings before its first step.
-const FIRST_FILES: [&str; 5] = [SCENE_TEXT, BALLS_TABLE, BEARINGS_TABLE, SHAFT_TABLE, ENERGY_TABLE];
+const FIRST_FILES: [&str; 7] = [
+    SCENE_TEXT,
+    BALLS_TABLE,
+    BEARINGS_TABLE,
+    SHAFT_TABLE,
+    ENERGY_TABLE,
+    MODES_TABLE,
+    MODE_SHAFT_TABLE,
+];
 
 /// A run of a list whose bearings have no folders yet.
 pub struct ListStart {
@@ -117,6 +128,28 @@ pub fn ended_early(dir: &Path) -> Failure {
         "{} holds no step that is whole in all bearings: {}",
         dir.display(),
         start_again(dir)
+    ))
+}
+
+/// What to say of a folder of one bearing or of a list that has no summary: whether a process still writes, or how to
+/// go on with a run that was killed.
+pub fn not_ended(dir: &Path) -> Failure {
+    let folders: Vec<PathBuf> = std::iter::once(dir.to_path_buf()).chain(folders(dir)).collect();
+    let writer = folders
+        .iter()
+        .find_map(|folder| lock::writer(folder).ok().flatten());
+    let has_steps = |folder: &PathBuf| all_steps(folder).is_ok_and(|steps| !steps.is_empty());
+    let rest = match writer {
+        Some(owner) => format!(", and {owner} still writes to it"),
+        None if folders.iter().any(has_steps) => format!(
+            "; if it was killed, raceway resume {} goes on with a run over time, and says of others what to do",
+            shell_word(dir.display())
+        ),
+        None => String::new(),
+    };
+    Failure::User(anyhow!(
+        "{} has no {SUMMARY_FILE}; expected the results of a run that has ended{rest}",
+        dir.display()
     ))
 }
 

@@ -4,7 +4,7 @@ use assembly::Assembly;
 use comm::print;
 use dynamics::stiffness::N_SHAFT;
 
-use crate::console::fixed;
+use crate::console::{digits, fixed};
 use crate::several::{ListState, StateOnShaft, line};
 
 /// Prints the bearings and the ends of the shaft.
@@ -73,5 +73,5 @@ pub fn print_sweep_head(column: &str, assembly: &Assembly) {
 pub fn print_sweep_point(value: f64, point: &ListState) {
     let cell = |state: &StateOnShaft| format!("{:14.2} ({:5})", state.largest_ball_force, state.loaded_balls);
     let cells: Vec<String> = point.bearings.iter().map(cell).collect();
-    print::line(format_args!("{value:>28} {}", cells.join(" ")));
+    print::line(format_args!("{:>28} {}", digits(value), cells.join(" ")));
 }

@@ -15,6 +15,7 @@ use dynamics::kinematics::BothRings;
 use dynamics::stiffness::{N_SHAFT, ShaftMatrix};
 use serde::Serialize;
 
+use crate::console::digits;
 use crate::failure::Failure;
 use crate::stiffness::{
     Ripple, SCHEMA, STIFFNESS_FILE, STIFFNESS_TABLE, StiffnessAt, StiffnessResults, TableLine, UNITS,
@@ -234,7 +235,7 @@ impl SeveralStiffness {
             "{name:>width$}  of             k_x N/um   k_y N/um   k_z N/um  k_tilt_x, k_tilt_y N m/mrad"
         ));
         for (i, shaft) in self.shaft.iter().enumerate() {
-            let value = shaft.value.unwrap_or(i as f64);
+            let value = digits(shaft.value.unwrap_or(i as f64));
             let own = self
                 .bearings
                 .iter()

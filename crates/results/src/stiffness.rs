@@ -14,6 +14,7 @@ use dynamics::stiffness::{N_SHAFT, ShaftMatrix};
 use dynamics::system::Interval;
 use serde::Serialize;
 
+use crate::console::digits;
 use crate::failure::Failure;
 use crate::summary::print_warnings;
 use crate::whole;
@@ -277,7 +278,7 @@ impl StiffnessResults {
         for (i, point) in self.points.iter().enumerate() {
             let k = |i: usize| point.stiffness[i][i] * if i < 3 { 1e-6 } else { 1e-3 };
             let force = point.operating_point.largest_force();
-            let value = point.value.unwrap_or(i as f64);
+            let value = digits(point.value.unwrap_or(i as f64));
             print::line(format_args!(
                 "{value:>width$} {:10.3} {:10.3} {:10.3} {:12.4} {:12.4} {force:21.2}",
                 k(0),

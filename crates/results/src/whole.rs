@@ -77,6 +77,15 @@ pub fn require_free(dir: &Path, names: &[&str]) -> anyhow::Result<()> {
     }
 }
 
+/// The folder that a command writes into: the one asked for, where nothing of these names may be yet, or that of the
+/// results.
+pub fn output_folder<'a>(asked: Option<&'a Path>, dir: &'a Path, names: &[&str]) -> anyhow::Result<&'a Path> {
+    let Some(out) = asked else { return Ok(dir) };
+    require_free(out, names)?;
+    make_asked_folder(out)?;
+    Ok(out)
+}
+
 /// Makes a folder in one that is there, unless somebody else just did. A link in its place is not followed.
 pub fn make_folder(path: &Path) -> anyhow::Result<()> {
     match std::fs::create_dir(path) {
@@ -118,11 +127,35 @@ fn write_by(path: &Path, fill: impl FnOnce(&mut dyn Write) -> std::io::Result<()
     // What a process of this number left; it is gone if there was none.
     let _ = std::fs::remove_file(&hidden);
     let written = write_hidden(&hidden, fill).and_then(|()| std::fs::rename(&hidden, path));
+    remove_stale(path, &name);
     if written.is_err() {
         // The first error is the one to report.
         let _ = std::fs::remove_file(&hidden);
     }
     written.map_err(|error| cannot("write", path, error))
+}
+
+/// Removes what processes left beside a file that were killed while they wrote it. A failure leaves a hidden file.
+fn remove_stale(path: &Path, name: &str) {
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
+    let entries = std::fs::read_dir(folder.unwrap_or(Path::new(".")));
+    for entry in entries.into_iter().flatten().flatten() {
+        let own = entry.file_name();
+        let number = own.to_str().and_then(|own| {
+            let rest = own.strip_prefix('.')?.strip_prefix(name)?.strip_prefix('.')?;
+            rest.strip_suffix(".tmp")?.parse::<u32>().ok()
+        });
+        let is_plain = entry.file_type().is_ok_and(|kind| kind.is_file());
+        if number.is_some_and(|number| is_plain && has_ended(number, &entry.path())) {
+            let _ = std::fs::remove_file(entry.path());
+        }
+    }
+}
+
+/// Whether nobody writes a hidden file: not the process of its number here, nor one elsewhere, which has it locked.
+fn has_ended(process: u32, hidden: &Path) -> bool {
+    let is_here = Path::new("/proc").join(process.to_string()).exists();
+    !is_here && File::open(hidden).is_ok_and(|file| file.try_lock().is_ok())
 }
 
 /// Why a file or folder cannot be made. Where it may not be made at all another place is the way out.
@@ -141,7 +174,10 @@ fn write_hidden(
     hidden: &Path,
     fill: impl FnOnce(&mut dyn Write) -> std::io::Result<()>,
 ) -> std::io::Result<()> {
-    let mut file = BufWriter::new(File::create_new(hidden)?);
+    let file = File::create_new(hidden)?;
+    // Where a file system knows no locks, nobody takes this one for left behind.
+    let _ = file.try_lock();
+    let mut file = BufWriter::new(file);
     fill(&mut file)?;
     file.flush()?;
     file.get_ref().sync_all()
@@ -153,6 +189,27 @@ mod tests {
 
     use super::*;
     use crate::failure::one_line;
+
+    /// Wrong: what a study that was killed had half written would stay for ever, or a file would go that another
+    /// process writes, or the user's. No process has the number.
+    #[test]
+    fn what_a_killed_process_left_goes() {
+        let dir = tempfile::tempdir().unwrap();
+        let path = |name: &str| dir.path().join(name);
+        let left = [".a.md.4194305.tmp", ".a.md.4194306.tmp"].map(path);
+        let others = [".a.md.notes.tmp", ".b.md.4194305.tmp", ".a.md.1.tmp"].map(path);
+        left.iter()
+            .chain(&others)
+            .for_each(|path| std::fs::write(path, "half").unwrap());
+        let writer = File::open(&left[1]).unwrap();
+        writer.lock().unwrap();
+        write_new(&path("a.md"), |file| file.write_all(b"whole")).unwrap();
+        assert!(!left[0].exists() && left[1].exists());
+        assert!(others.iter().all(|path| path.exists()));
+        drop(writer);
+        write(&path("a.md"), b"again", |_| true).unwrap();
+        assert!(!left[1].exists());
+    }
 
     /// Wrong: a command would replace a file of the user's, write through a link, or leave half a file.
     #[test]

@@ -5,6 +5,7 @@ pub mod fourier;
 pub mod lines;
 pub mod orders;
 pub mod passages;
+mod picture;
 pub mod signal;
 mod sound;
 mod spall_length;
@@ -16,14 +17,15 @@ use anyhow::{Context, bail, ensure};
 use checkpoint::{all_steps, read_any_step};
 use clap::Args;
 use comm::print;
-use figure::{Axis, DataPoint, Figure, Series};
+use figure::Axis;
 use results::failure::Failure;
 use results::integrity::warn_of_doubts;
-use results::whole::{make_folder, require_own_picture, write, write_picture};
+use results::whole::{make_folder, output_folder, require_own_picture, write, write_picture};
 use scene::{Analysis, MeshFiles, Scene};
 
 use fourier::LineSpectrum;
 use lines::{Line, lines, smear};
+use picture::{Abscissa, FREQUENCY, Titled, draw};
 use signal::Signal;
 
 pub use spall_length::{SpallLengthCommand, spall_length};
@@ -65,6 +67,9 @@ pub struct SpectrumCommand {
     /// Highest frequency of the figure, Hz, or order; default: the tenth multiple of the highest line.
     #[arg(long)]
     upto: Option<f64>,
+    /// Folder of table, figure and signal; default: the folder of the results. Nothing in it is replaced.
+    #[arg(long)]
+    out: Option<PathBuf>,
 }
 
 /// Two frequencies, Hz.
@@ -90,44 +95,8 @@ impl FromStr for Band {
     }
 }
 
-/// Height from name to name of the lines in a figure, as a share of it.
-const LABEL_STEP: f64 = 0.08;
-
-/// Height of the marks of sidebands, as a share of the figure.
-const SIDEBAND_HEIGHT: f64 = 0.4;
-
-/// A spectrum and how it is called.
-struct Titled {
-    spectrum: LineSpectrum,
-    /// Name of the files.
-    file: String,
-    /// Second column of the table.
-    column: String,
-    title: String,
-    axis: Axis,
-    is_density: bool,
-    /// From SI to the unit of the axis.
-    factor: f64,
-    over: Abscissa,
-}
-
-/// What a spectrum is over.
-#[derive(Clone, Copy)]
-struct Abscissa {
-    /// First column of the table.
-    column: &'static str,
-    name: &'static str,
-    unit: &'static str,
-    /// Hz of one unit: 1, or the mean speed of the tachometer, turns a second.
-    hertz: f64,
-}
-
-const FREQUENCY: Abscissa = Abscissa {
-    column: "frequency_hz",
-    name: "frequency",
-    unit: "Hz",
-    hertz: 1.0,
-};
+/// Folder of the figures in that of the tables.
+const FIGURES: &str = "figures";
 
 /// Writes the table and the figure of a spectrum.
 pub fn spectrum(request: &SpectrumCommand) -> Result<(), Failure> {
@@ -150,15 +119,18 @@ pub fn spectrum(request: &SpectrumCommand) -> Result<(), Failure> {
     });
     warn_of_doubts(dir)?;
     let figure = draw(&named, &marks, request.upto)?.images()?;
-    let table = dir.join(format!("{}.csv", named.file));
-    let picture = dir.join("figures").join(&named.file);
+    let names = request.file_names(&named, &signal);
+    let names: Vec<&str> = names.iter().map(String::as_str).collect();
+    let out = output_folder(request.out.as_deref(), dir, &names)?;
+    let table = out.join(format!("{}.csv", named.file));
+    let picture = out.join(FIGURES).join(&named.file);
     require_own_picture(&picture)?;
     write_table(&table, &named)?;
-    make_folder(&dir.join("figures"))?;
+    make_folder(&out.join(FIGURES))?;
     write_picture(&picture, &figure.svg, &figure.png)?;
-    say(dir, &named, &marks);
+    say(out, &named, &marks);
     if request.wav {
-        let [sound, text] = sound::write_wav(dir, &signal)?;
+        let [sound, text] = sound::write_wav(out, &signal)?;
         print::line(format_args!(
             "{}, its scale in {}",
             sound.display(),
@@ -166,7 +138,7 @@ pub fn spectrum(request: &SpectrumCommand) -> Result<(), Failure> {
         ));
     }
     if request.csv {
-        print::line(format_args!("{}", sound::write_csv(dir, &signal)?.display()));
+        print::line(format_args!("{}", sound::write_csv(out, &signal)?.display()));
     }
     Ok(())
 }
@@ -209,6 +181,20 @@ pub fn scene_of(dir: &Path) -> Result<Scene, Failure> {
 }
 
 impl SpectrumCommand {
+    /// The files that are written.
+    fn file_names(&self, named: &Titled, signal: &Signal) -> Vec<String> {
+        let file = &named.file;
+        let mut names = vec![format!("{file}.csv")];
+        names.extend(["svg", "png"].map(|ending| format!("{FIGURES}/{file}.{ending}")));
+        if self.wav {
+            names.extend(sound::wav_names(signal));
+        }
+        if self.csv {
+            names.push(sound::csv_name(signal));
+        }
+        names
+    }
+
     /// The signal that is asked for, within the span of time.
     fn signal(&self) -> anyhow::Result<Signal> {
         let span = [self.from, self.to];
@@ -254,7 +240,7 @@ impl SpectrumCommand {
                 file: file("_density"),
                 column: format!("density_{ending}_squared_per_{per}"),
                 title: format!("Power density of {what}"),
-                axis: Axis::logarithmic("power density", format!("({})²/{}", unit.sign, samples.over.unit)),
+                axis: Axis::logarithmic("power density", density_unit(unit.sign, samples.over)),
                 is_density: true,
                 factor: unit.factor * unit.factor,
                 over: samples.over,
@@ -304,6 +290,19 @@ impl SpectrumCommand {
     }
 }
 
+/// Unit of a power density: an order has none, and a pure number only that of the abscissa.
+fn density_unit(sign: &str, over: Abscissa) -> String {
+    let square = if sign == "1" {
+        sign.to_string()
+    } else {
+        format!("({sign})²")
+    };
+    match over.unit {
+        "1" => square,
+        unit => format!("{square}/{unit}"),
+    }
+}
+
 /// Samples of equal steps of time or angle.
 struct Samples {
     values: Vec<f64>,
@@ -325,66 +324,6 @@ impl Samples {
     }
 }
 
-fn draw(named: &Titled, marks: &[Line], upto: Option<f64>) -> anyhow::Result<Figure> {
-    let LineSpectrum { resolution, values } = &named.spectrum;
-    let highest = marks.iter().map(|line| line.frequency).fold(0.0, f64::max);
-    if let Some(upto) = upto {
-        ensure!(upto > 0.0, "--upto is {upto}; expected more than 0");
-    }
-    let end = upto.unwrap_or(10.0 * highest).min(named.spectrum.highest());
-    ensure!(
-        end > 2.0 * resolution,
-        "the record is too short for a figure up to {end} {unit}: its resolution is {resolution:.6} {unit}",
-        unit = named.over.unit
-    );
-    // The mean is taken out: frequency 0 has nothing to show.
-    let last = (end / resolution).floor() as usize;
-    let points: Vec<DataPoint> = (1..=last)
-        .map(|k| DataPoint::new(k as f64 * resolution, named.factor * values[k]))
-        .collect();
-    let top = points.iter().map(|p| p.y).fold(f64::MIN_POSITIVE, f64::max);
-    let low = points
-        .iter()
-        .map(|p| p.y)
-        .filter(|y| *y > 0.0)
-        .fold(top, f64::min);
-    let bottom = if named.is_density { low } else { 0.0 };
-    let mut figure = Figure::new(
-        &named.title,
-        Axis::linear(named.over.name, named.over.unit).tight(),
-        named.axis.clone(),
-    )
-    .note(
-        "Dashed: lines of the bearing and their multiples, from the simulated cage speed; short: sidebands",
-    );
-    let at_height = |height: f64| {
-        if named.is_density {
-            top * (bottom / top).powf(1.0 - height)
-        } else {
-            top * height
-        }
-    };
-    for (place, line) in marks.iter().enumerate() {
-        for (x, is_sideband) in line.family() {
-            if x <= points[points.len() - 1].x {
-                let y = if is_sideband {
-                    at_height(SIDEBAND_HEIGHT)
-                } else {
-                    top
-                };
-                let mark = [bottom, y].map(|y| DataPoint::new(x, y));
-                figure = figure.series(Series::reference("", mark.to_vec()));
-            }
-        }
-        // Names stand one below the other: lines may be close.
-        let y = at_height(1.0 - LABEL_STEP * (place as f64 + 0.5));
-        if line.frequency <= points[points.len() - 1].x {
-            figure = figure.label(DataPoint::new(line.frequency, y), line.name);
-        }
-    }
-    Ok(figure.series(Series::line("", points)))
-}
-
 fn write_table(path: &Path, named: &Titled) -> anyhow::Result<()> {
     let head = format!("{},{}\n", named.over.column, named.column);
     let rows = named.spectrum.values.iter().enumerate();
@@ -394,7 +333,7 @@ fn write_table(path: &Path, named: &Titled) -> anyhow::Result<()> {
 }
 
 /// What stands at the lines.
-fn say(dir: &Path, named: &Titled, marks: &[Line]) {
+fn say(out: &Path, named: &Titled, marks: &[Line]) {
     // An order has no unit.
     let unit = if named.over.column == FREQUENCY.column {
         " Hz"
@@ -404,8 +343,8 @@ fn say(dir: &Path, named: &Titled, marks: &[Line]) {
     print::line(format_args!(
         "{}.csv in {}, figure in {}; resolution {:.4}{unit}; {}:",
         named.file,
-        dir.display(),
-        dir.join("figures").display(),
+        out.display(),
+        out.join(FIGURES).display(),
         named.spectrum.resolution,
         named.column
     ));
@@ -427,5 +366,23 @@ fn say(dir: &Path, named: &Titled, marks: &[Line]) {
                 at(sign, line.frequency + side);
             }
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Wrong: a density over orders would have a unit over 1.
+    #[test]
+    fn a_density_over_orders_has_the_square_of_a_unit() {
+        let orders = Abscissa {
+            unit: "1",
+            ..FREQUENCY
+        };
+        assert_eq!(density_unit("µm", FREQUENCY), "(µm)²/Hz");
+        assert_eq!(density_unit("µm", orders), "(µm)²");
+        assert_eq!(density_unit("1", FREQUENCY), "1/Hz");
+        assert_eq!(density_unit("1", orders), "1");
     }
 }

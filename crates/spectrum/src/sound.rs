@@ -19,10 +19,20 @@ use crate::signal::Signal;
 /// How the text beside a WAV file begins.
 const MARK: &str = "# A signal as raceway spectrum --wav wrote it: value = offset + scale * sample\n";
 
+/// Names of the sound and of the text beside it.
+pub fn wav_names(signal: &Signal) -> [String; 2] {
+    let sound = format!("signal_{}.wav", signal.name);
+    [sound.clone(), sound + ".toml"]
+}
+
+/// Name of the table of a signal.
+pub fn csv_name(signal: &Signal) -> String {
+    format!("signal_{}.csv", signal.name)
+}
+
 /// Writes `signal_NAME.wav` and `signal_NAME.wav.toml`; returns both paths.
 pub fn write_wav(dir: &Path, signal: &Signal) -> anyhow::Result<[PathBuf; 2]> {
-    let sound = dir.join(format!("signal_{}.wav", signal.name));
-    let text = sound.with_added_extension("toml");
+    let [sound, text] = wav_names(signal).map(|name| dir.join(name));
     require_own(&text, |old| old.starts_with(MARK.as_bytes()))?;
     // A WAV file has no place for a mark; it is known by the text beside it.
     require_own(&sound, |_| text.exists())?;
@@ -67,7 +77,7 @@ fn wav(signal: &Signal, offset: f64, scale: f64, rate: f64) -> anyhow::Result<Ve
 
 /// Writes `signal_NAME.csv`, a line per sample; returns its path.
 pub fn write_csv(dir: &Path, signal: &Signal) -> anyhow::Result<PathBuf> {
-    let path = dir.join(format!("signal_{}.csv", signal.name));
+    let path = dir.join(csv_name(signal));
     let head = format!("time_s,{}\n", signal.column());
     let row = |(k, value): (usize, &f64)| format!("{:?},{value:?}\n", signal.start + k as f64 / signal.rate);
     let content = head.clone() + &signal.values.iter().enumerate().map(row).collect::<String>();

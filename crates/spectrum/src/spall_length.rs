@@ -12,7 +12,7 @@ use results::ball_turns::BallTurns;
 use results::failure::Failure;
 use results::integrity::warn_of_doubts;
 use results::table::Table;
-use results::whole::write;
+use results::whole::{output_folder, write};
 use scene::{Scene, ShaftMotion, geometry};
 
 use crate::passages::{BallAt, LEAST_QUIET, PassedBearing, ShaftRecord, SpallPassage, passages};
@@ -30,9 +30,12 @@ pub struct SpallLengthCommand {
     /// Mass that moves with the shaft, kg; default: that of the scene, of an elastic inner ring that of a tube.
     #[arg(long, value_name = "KG")]
     mass: Option<f64>,
+    /// Folder of spall_lengths.csv; default: the folder of the results. Nothing in it is replaced.
+    #[arg(long)]
+    out: Option<PathBuf>,
 }
 
-/// Table that is written into the folder of the run.
+/// Table of the passages.
 const TABLE: &str = "spall_lengths.csv";
 /// Passages of one spall lie on the ring within this of each other, rad.
 const SPREAD: f64 = 0.02;
@@ -62,12 +65,13 @@ pub fn spall_length(command: &SpallLengthCommand) -> Result<(), Failure> {
         format!("{},{entry:?},{impact:?},{azimuth:?},{length},{flies}\n", p.ball)
     };
     let table = head.to_string() + &found.iter().map(row).collect::<String>();
-    write(&dir.join(TABLE), table.as_bytes(), |old| {
+    let out = output_folder(command.out.as_deref(), dir, &[TABLE])?;
+    write(&out.join(TABLE), table.as_bytes(), |old| {
         old.starts_with(head.as_bytes())
     })?;
     found.iter().for_each(say_passage);
     say_all(&found, &record, &known);
-    print::line(format_args!("{TABLE} in {}", dir.display()));
+    print::line(format_args!("{TABLE} in {}", out.display()));
     Ok(())
 }
 

@@ -255,6 +255,7 @@ fn quantity(raw: RawQuantity, axes: &[StudyAxis]) -> anyhow::Result<StudyQuantit
         source,
         scale: raw.scale,
         reference,
+        is_optional: raw.optional.unwrap_or(false),
     })
 }
 

@@ -113,6 +113,7 @@ pub struct RawQuantity {
     pub take: Option<Take>,
     pub scale: Option<f64>,
     pub reference: Option<RawReference>,
+    pub optional: Option<bool>,
 }
 
 /// What a cell of a table has to be.

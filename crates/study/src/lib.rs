@@ -13,6 +13,7 @@
 
 mod advise;
 mod check;
+mod early;
 mod errors;
 mod format;
 mod machine;
@@ -124,13 +125,21 @@ fn run_missing(
     }
     make_asked_folder(out)?;
     let mut missing: Vec<Point> = Vec::new();
+    let mut finished = None;
     for point in wanted {
         match record::find(plan, point, out)? {
-            Some(record) if record.failure.is_none() || !retry_failed => {}
+            Some(record) if record.failure.is_none() => finished = finished.or(Some(point.index)),
+            Some(_) if !retry_failed => {}
             _ => missing.push(point.clone()),
         }
     }
-    runner::run(plan, &missing, out, jobs)
+    // Tables of points that are all there say themselves what is not to be read.
+    if let Some(index) = finished
+        && !missing.is_empty()
+    {
+        early::require_readable(plan, index, out)?;
+    }
+    runner::run(plan, &missing, (out, finished.is_some()), jobs)
 }
 
 fn absolute(out: &Path) -> anyhow::Result<PathBuf> {

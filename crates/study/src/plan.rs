@@ -95,6 +95,8 @@ pub struct StudyQuantity {
     pub scale: Option<f64>,
     /// What errors are measured against; none are when `None`.
     pub reference: Option<Reference>,
+    /// Whether points may be without it.
+    pub is_optional: bool,
 }
 
 /// Where a number stands in the results of a run.

@@ -156,6 +156,8 @@ fn entry(
         },
         scale: None,
         reference: None,
+        // A variant may be without a number; the table says so.
+        is_optional: true,
     }
 }
 

@@ -23,9 +23,18 @@ pub struct Reading {
     pub history: Vec<[f64; 2]>,
 }
 
-/// Reads one quantity from the result folder `dir`.
+/// Reads one quantity from the result folder `dir`; refuses what is no number.
 pub fn read(source: &Source, dir: &Path) -> anyhow::Result<Reading> {
-    let reading = match source {
+    let reading = look_up(source, dir)?;
+    if !reading.value.is_finite() {
+        bail!("{} is no number", reading.value);
+    }
+    Ok(reading)
+}
+
+/// Reads what stands where a quantity is in the result folder `dir`.
+pub fn look_up(source: &Source, dir: &Path) -> anyhow::Result<Reading> {
+    Ok(match source {
         Source::Summary(pointer) => Reading {
             value: summary_number(dir, pointer)?,
             history: Vec::new(),
@@ -46,11 +55,7 @@ pub fn read(source: &Source, dir: &Path) -> anyhow::Result<Reading> {
                 },
             }
         }
-    };
-    if !reading.value.is_finite() {
-        bail!("{} is no number", reading.value);
-    }
-    Ok(reading)
+    })
 }
 
 fn summary_number(dir: &Path, pointer: &str) -> anyhow::Result<f64> {
@@ -104,7 +109,7 @@ fn table_rows(
     let Rows {
         names: header,
         rows: all,
-    } = table.with_context(|| format!("cannot read {}", path.display()))?;
+    } = table.with_context(|| format!("{} is not there; {}", path.display(), tables_of(dir)))?;
     let index = |name: &str| match header.iter().position(|h| h == name) {
         Some(i) => Ok(i),
         None => bail!("{file} has no column {name:?}; columns are {}", header.join(", ")),
@@ -140,6 +145,17 @@ fn table_rows(
         );
     }
     Ok(rows)
+}
+
+/// The tables that a folder has.
+fn tables_of(dir: &Path) -> String {
+    let names = std::fs::read_dir(dir).into_iter().flatten().flatten();
+    let mut names: Vec<String> = names
+        .map(|entry| entry.file_name().to_string_lossy().into_owned())
+        .filter(|name| name.ends_with(".csv"))
+        .collect();
+    names.sort();
+    format!("tables there are {}", names.join(", "))
 }
 
 /// How `where` names one of some rows of a time, by the first column but that of the value that tells them apart.

@@ -9,7 +9,7 @@
 use std::fs::{File, TryLockError};
 use std::os::unix::process::ExitStatusExt;
 use std::path::Path;
-use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
@@ -23,6 +23,7 @@ use scene::{MeshFiles, Scene};
 use signal_hook::consts::{SIGINT, SIGTERM};
 use wait4::Wait4;
 
+use super::early::require_readable;
 use super::format::Meshes;
 use super::machine;
 use super::plan::{Plan, Point, arguments};
@@ -37,10 +38,12 @@ const LOCK_WAIT: Duration = Duration::from_millis(100);
 /// Exit code of a run that was asked to stop.
 const STOPPED: i32 = 75;
 
-/// Runs these points, `jobs` at a time. Stops between points when a signal came.
-pub fn run(plan: &Plan, points: &[Point], out: &Path, jobs: usize) -> Result<(), Failure> {
+/// Runs these points, `jobs` at a time. Stops between points when a signal came, and after the first that finishes if
+/// it has not what the study reads, unless an earlier one `is_read`.
+pub fn run(plan: &Plan, points: &[Point], (out, is_read): (&Path, bool), jobs: usize) -> Result<(), Failure> {
     let stop = Mutex::new(Stop::listen(Instant::now(), None)?);
     let next = AtomicUsize::new(0);
+    let is_read = AtomicBool::new(is_read);
     let first_failure: Mutex<Option<Failure>> = Mutex::new(None);
     let work = || {
         loop {
@@ -52,7 +55,12 @@ pub fn run(plan: &Plan, points: &[Point], out: &Path, jobs: usize) -> Result<(),
                     "{reason} after {i} of {} points; the same command goes on",
                     points.len()
                 ))),
-                None => run_point(plan, point, out),
+                None => run_point(plan, point, out).and_then(|end| match end {
+                    PointEnd::Finished if !is_read.swap(true, Ordering::Relaxed) => {
+                        require_readable(plan, point.index, out)
+                    }
+                    _ => Ok(()),
+                }),
             };
             if let Err(failure) = result {
                 next.store(points.len(), Ordering::Relaxed);
@@ -70,8 +78,16 @@ pub fn run(plan: &Plan, points: &[Point], out: &Path, jobs: usize) -> Result<(),
     failure.map_or(Ok(()), Err)
 }
 
+/// What became of a point.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum PointEnd {
+    Finished,
+    /// Its run failed, or is another process's.
+    WithoutResults,
+}
+
 /// Runs one point and records what became of it. A failed run is a result; an error is one of the study itself.
-fn run_point(plan: &Plan, point: &Point, out: &Path) -> Result<(), Failure> {
+fn run_point(plan: &Plan, point: &Point, out: &Path) -> Result<PointEnd, Failure> {
     let dir = record::folder(out, point.index);
     dir.parent().map_or(Ok(()), make_folder)?;
     make_folder(&dir)?;
@@ -80,7 +96,7 @@ fn run_point(plan: &Plan, point: &Point, out: &Path) -> Result<(), Failure> {
             "point {} is being run by another process",
             point.index
         ));
-        return Ok(());
+        return Ok(PointEnd::WithoutResults);
     };
     let lock = take_lock(&dir.join(".run.lock"), RUN_TRIES)?.with_context(|| {
         let folder = dir.display();
@@ -119,7 +135,11 @@ fn run_point(plan: &Plan, point: &Point, out: &Path) -> Result<(), Failure> {
     if let Some(reason) = &record.failure {
         print::note(format_args!("point {} failed: {reason}", point.index));
     }
-    Ok(record::write(&record, out)?)
+    record::write(&record, out)?;
+    Ok(match record.failure {
+        None => PointEnd::Finished,
+        Some(_) => PointEnd::WithoutResults,
+    })
 }
 
 /// Takes the lock `path`; nothing if somebody has it all the time that is tried.

@@ -62,7 +62,7 @@ pub fn write(plan: &Plan, report: &StudyReport, out: &Path) -> anyhow::Result<Op
 
 impl Signals {
     /// The file of a run, and its times, s.
-    fn of_run(&self, dir: &Path) -> anyhow::Result<(String, Vec<f64>)> {
+    pub fn of_run(&self, dir: &Path) -> anyhow::Result<(String, Vec<f64>)> {
         let path = dir.join(&self.table);
         let table = Table::read(dir, &self.table)?
             .with_context(|| format!("{} is not there; [signals] needs it in every run", path.display()))?;
