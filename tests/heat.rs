@@ -126,7 +126,7 @@ fn thick_oil_has_its_steady_state() {
     }
 }
 
-/// Wrong: what a balance cannot be found with would be guessed.
+/// Wrong: what a balance cannot be found with would be guessed, or an error would name a key that no scene has.
 #[test]
 fn what_a_balance_lacks_is_said() {
     let dir = scene(HEAT);
@@ -202,6 +202,12 @@ fn what_a_balance_lacks_is_said() {
         let other = scene(&HEAT.replace(from, to));
         refused(&other, &[], 2, expected);
     };
+    of(
+        "ambient = \"20 degC\"\nspeed = \"3000 rpm\"\ntorque = \"0.05 N m\"\n",
+        "ambient = \"-70 degC\"\nspeed = \"3000 rpm\"\nf_0 = 2.0\nf_1 = 1e-3\nviscosity_class = 32\n\
+         viscosity_at_100 = \"5.4 mm2/s\"\n",
+        "heat.ambient is -70 degC; expected -60 degC to 300 degC of an oil by its class",
+    );
     of(
         "speed = \"3000 rpm\"\n",
         "",

@@ -314,6 +314,22 @@ pub enum DynamicsError {
         /// Share of the circumference, per cent.
         percent: f64,
     },
+    /// A wave of a seat that its nodes take for another one.
+    #[error(
+        "[[effects.seat_form]] of order {order} has {per_wave:.1} nodes for each wave round the seat of the {side} \
+         ring, which take it for a wave of another order; expected more than 2, at most order {most}, or a mesh that \
+         is finer there"
+    )]
+    SeatFormTooFine {
+        /// `inner` or `outer`.
+        side: &'static str,
+        /// Waves round the circumference.
+        order: usize,
+        /// Nodes for each wave.
+        per_wave: f64,
+        /// Highest order that the nodes tell from others.
+        most: usize,
+    },
     /// A seat form on a ring that does not follow it.
     #[error(
         "[[effects.seat_form]] gives the {side} ring the form of its seat, which only a flexible ring with \
@@ -354,6 +370,7 @@ impl DynamicsError {
             | DynamicsError::FitLetsGo { .. }
             | DynamicsError::FitYields { .. }
             | DynamicsError::SeatLifts { .. }
+            | DynamicsError::SeatFormTooFine { .. }
             | DynamicsError::SeatFormNotClamped { .. }
             | DynamicsError::MountedOnRanks { .. }
             | DynamicsError::Contact(ContactError::Hole { .. }) => true,

@@ -274,7 +274,7 @@ impl StaticSolver {
             let contact_loads = case.loads.contacts.clone();
             let mut clock = Stopwatch::start();
             if round == 1 {
-                adopt_offsets(&case.parts, &mut u);
+                adopt_offsets(&case.parts, &mut u, case.scales.step);
                 u = approach_facets(&mut case.parts, u, case.scales)?;
             }
             u = case.settle(&self.costs, u)?;
@@ -425,13 +425,22 @@ fn approach_facets(
     Ok(u)
 }
 
-/// Starts groove motions at what was measured: the first guess of a ring that answers for the first time.
-fn adopt_offsets(parts: &BearingParts, u: &mut Displacements) {
-    for (groove, ring) in u.grooves.iter_mut().zip(&parts.rings) {
-        if let Some(ring) = ring {
-            let offsets = Meridian::list(&ring.offset);
-            groove.iter_mut().zip(offsets).for_each(|(g, c)| *g = c);
-        }
+/// Grooves where the forces of their contacts put them: the first guess of a ring that answers for the first time. Not
+/// where one would go farther than `longest`, m: balls and shaft of a bearing in a soft body would be left behind,
+/// pressed by many times any load. Newton takes them along.
+fn adopt_offsets(parts: &BearingParts, u: &mut Displacements, longest: f64) {
+    let list = |ring: &Option<ElasticPorts>| ring.as_ref().map(|ring| Meridian::list(&ring.offset));
+    let offsets = parts.rings.each_ref().map(list).map(Option::unwrap_or_default);
+    let mut moves = u
+        .grooves
+        .iter()
+        .zip(&offsets)
+        .flat_map(|(from, to)| from.iter().zip(to));
+    if moves.any(|(from, to)| (*to - *from).norm() > longest) {
+        return;
+    }
+    for (groove, offsets) in u.grooves.iter_mut().zip(offsets) {
+        groove.iter_mut().zip(offsets).for_each(|(g, c)| *g = c);
     }
 }
 

@@ -248,3 +248,32 @@ fn a_seat_form_is_taken_over_by_a_clamped_ring() {
         "[[effects.seat_form]] gives the inner ring the form of its seat, which only a flexible ring with";
     assert!(said.starts_with(start), "{said}");
 }
+
+/// Wrong: a seat would take a wave of many orders for an oval, as 60 nodes have the same cosines of orders 58 and 2, or
+/// a wave that its nodes hardly follow would be computed without a word.
+#[test]
+fn a_seat_form_that_the_nodes_of_the_seat_do_not_follow_is_refused() {
+    let rings = flexible(Hold::Clamped);
+    let of_order = |order| Conditions {
+        seat_forms: vec![SeatForm {
+            side: Side::Outer,
+            order,
+            amplitude: 1e-6,
+            azimuth: 0.0,
+        }],
+        ..Conditions::default()
+    };
+    for order in [30, 58] {
+        let said = message(&rings, &of_order(order));
+        let start = format!("[[effects.seat_form]] of order {order} has ");
+        assert!(said.starts_with(&start), "{said}");
+        assert!(said.contains("expected more than 2, at most order 29"), "{said}");
+    }
+    let warnings = |order| mount(&rings, &of_order(order)).report.unwrap().warnings;
+    assert!(warnings(10).is_empty());
+    let said = warnings(15);
+    assert!(
+        said.len() == 1 && said[0].contains("has 4.0 nodes for each wave"),
+        "{said:?}"
+    );
+}

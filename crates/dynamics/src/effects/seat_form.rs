@@ -18,7 +18,7 @@ use crate::mounting::{self, Conditions};
 
 const EXAMPLE: &str = r#"[[effects.seat_form]]           # a table for each wave
 ring = "inner"                  # "inner" or "outer"; flexible, with support = "clamped"
-order = 3                       # waves round the circumference, 2 to 100
+order = 3                       # waves round the circumference, 2 to 100; six nodes of the seat for each, or more
 amplitude = "5 um"              # deviation of the radius at a crest
 azimuth = "0 deg"               # of a crest in the frame of the ring; optional, default 0 deg
 "#;

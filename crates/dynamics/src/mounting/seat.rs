@@ -27,6 +27,8 @@ use crate::error::DynamicsError;
 
 /// Places round the circumference at which the pressure of a seat is looked at.
 const PLACES: usize = 720;
+/// Nodes for each wave of a seat below which the wave of the groove is off by more than some per cent.
+const NODES_PER_WAVE: f64 = 6.0;
 
 /// What is known of a fit.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -71,6 +73,8 @@ pub struct RingSeat {
     fit: Option<(Fit, Tube)>,
     answer: SeatAnswer,
     forms: Vec<FormField>,
+    /// Forms for whose waves the seat has few nodes, as warnings.
+    coarse: Vec<String>,
     /// What the ring does by its own strain about the mean; None: it has none.
     own: Option<Arc<SeatField>>,
 }
@@ -120,6 +124,10 @@ impl RingSeat {
             .filter(|f| f.side == side)
             .collect();
         let fit = conditions.fits[i];
+        let coarse = match bearing.rings[i].as_deref() {
+            Some(ring) => coarse_waves(side, ring, &forms)?,
+            None => Vec::new(),
+        };
         let is_clamped = |ring: &RingModel| ring.hold == Hold::Clamped;
         let (answer, forms) = match bearing.rings[i].as_deref() {
             Some(ring) if is_clamped(ring) => {
@@ -156,6 +164,7 @@ impl RingSeat {
             fit: fit.map(|fit| (fit, partner_tube(bearing, side, fit))),
             answer,
             forms,
+            coarse,
         })
     }
 
@@ -189,7 +198,7 @@ impl RingSeat {
             groove,
             field: sum(&mounted.parts),
             own_stress: self.own.as_ref().and_then(|own| own.own_stress.clone()),
-            warnings: self.warnings(mounted.pressure, strain),
+            warnings: [self.coarse.clone(), self.warnings(mounted.pressure, strain)].concat(),
             report,
         })
     }
@@ -366,6 +375,33 @@ impl RingSeat {
         }
         Vec::new()
     }
+}
+
+/// Warnings of forms for whose waves the seat has few nodes. Fails where nodes take a wave for another one.
+fn coarse_waves(side: Side, ring: &RingModel, forms: &[SeatForm]) -> Result<Vec<String>, DynamicsError> {
+    let nodes = TAU / ring.held_spacing();
+    // Of two nodes for each wave, a wave between them is zero at both.
+    let most = (0.5 * nodes * (1.0 - 1e-6)).floor() as usize;
+    let side = side.name();
+    let mut warnings = Vec::new();
+    for &SeatForm { order, .. } in forms {
+        let per_wave = nodes / order as f64;
+        if order > most {
+            return Err(DynamicsError::SeatFormTooFine {
+                side,
+                order,
+                per_wave,
+                most,
+            });
+        }
+        if per_wave < NODES_PER_WAVE * (1.0 - 1e-6) {
+            warnings.push(format!(
+                "[[effects.seat_form]] of order {order} has {per_wave:.1} nodes for each wave round the seat of the \
+                 {side} ring: below {NODES_PER_WAVE:.0} the groove takes over too little of it, with 4 by a tenth less"
+            ));
+        }
+    }
+    Ok(warnings)
 }
 
 /// Fields of a clamped ring.

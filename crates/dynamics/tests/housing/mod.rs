@@ -290,6 +290,26 @@ fn ring_and_housing_tied_in_functions_are_those_of_one_mesh() {
     assert!(pushed[3] < 1e-3, "{pushed:?}");
 }
 
+/// Wrong: a bearing in plastic or rubber, which yields by more than its grooves are apart, would have no equilibrium:
+/// the grooves would go where the body lets them, and leave balls and shaft behind.
+#[test]
+fn a_bearing_in_a_soft_housing_finds_its_equilibrium() {
+    let (own, _) = tube(&outer(Hold::Clamped), 2);
+    for young_modulus in [1e9, 3e8] {
+        let soft = Material {
+            young_modulus,
+            ..steel()
+        };
+        let space = space(&outer(Hold::MeanMotion), harmonics(4, 2));
+        let body = Arc::new(surrounding(own.clone(), space, soft));
+        let solution = equilibrium(&bearing(tied(SeatTie::to_seat(body, 0)), Backend::Auto));
+        let moved = solution.displacements.shaft[0].hypot(solution.displacements.shaft[2]);
+        let work = solution.work_defect.abs() / solution.load_work;
+        println!("{young_modulus:e} Pa: the shaft moves by {moved:e} m, work {work:e}");
+        assert!(moved > 2e-4 && work < 1e-9, "{moved:e} m, {work:e}");
+    }
+}
+
 /// Wrong: the housing would matter no more than a clamped seat, or the joint would carry other than the loads.
 #[test]
 fn the_joint_carries_the_loads_and_the_body_follows() {

@@ -105,6 +105,24 @@ impl RingModel {
         Ok((OwnStress { nodal, points }, load))
     }
 
+    /// Largest angle round the bore or seat from a node to the next one of its facet, rad.
+    pub fn held_spacing(&self) -> f64 {
+        let mut largest: f64 = 0.0;
+        for &facet in self.mesh.group(self.held_group) {
+            let places = self.mesh.facet_nodes(facet).map(|node| self.mesh.nodes[node]);
+            let places: Vec<[f64; 3]> = places.collect();
+            let [first_x, first_y, _] = places[0];
+            let from_first =
+                |[x, y, _]: &[f64; 3]| (first_x * y - first_y * x).atan2(first_x * x + first_y * y);
+            let mut angles: Vec<f64> = places.iter().map(from_first).collect();
+            angles.sort_by(f64::total_cmp);
+            largest = angles
+                .windows(2)
+                .fold(largest, |most, pair| most.max(pair[1] - pair[0]));
+        }
+        largest
+    }
+
     /// Motion of the bottom of the groove [radial, axial], m; see [`SeatField::groove`].
     pub fn groove_motion(&self, displacement: &[f64]) -> [f64; 2] {
         let weights = fem::facet_node_weights(&self.mesh, self.mesh.group(RACEWAY_GROUP));

@@ -269,6 +269,7 @@ impl RawHeat {
                     table: "heat",
                     class: Some(class),
                     at_100: self.viscosity_at_100.as_ref(),
+                    temperature_key: "ambient",
                     temperature: Some(&self.ambient),
                 };
                 keys.oil(class, problems)

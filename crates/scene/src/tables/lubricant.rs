@@ -117,6 +117,7 @@ impl RawLubricant {
             table: "lubricant",
             class: self.viscosity_class,
             at_100: self.viscosity_at_100.as_ref(),
+            temperature_key: "temperature",
             temperature: self.temperature.as_ref(),
         };
         keys.check_idle(problems);

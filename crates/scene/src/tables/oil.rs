@@ -72,7 +72,9 @@ pub(super) struct ClassKeys<'a> {
     pub class: Option<f64>,
     /// `viscosity_at_100`.
     pub at_100: Option<&'a Quantity<VISCOSITY>>,
-    /// `temperature`.
+    /// Key of the temperature: `temperature`, or what stands for it.
+    pub temperature_key: &'static str,
+    /// Its value.
     pub temperature: Option<&'a Temperature>,
 }
 
@@ -81,7 +83,7 @@ impl ClassKeys<'_> {
     pub fn check_idle(&self, problems: &mut Problems) {
         let table = self.table;
         for (key, is_given) in [
-            ("temperature", self.temperature.is_some()),
+            (self.temperature_key, self.temperature.is_some()),
             ("viscosity_at_100", self.at_100.is_some()),
         ] {
             if is_given && self.class.is_none() {
@@ -94,7 +96,7 @@ impl ClassKeys<'_> {
 
     /// An oil by its class and temperature.
     pub fn oil(&self, class: f64, problems: &mut Problems) -> Option<Oil> {
-        let table = self.table;
+        let (table, key) = (self.table, self.temperature_key);
         let Some([_, at_40]) = CLASSES.iter().find(|[name, _]| *name == class) else {
             let names: Vec<String> = CLASSES.iter().map(|[name, _]| name.to_string()).collect();
             problems.require(
@@ -108,16 +110,16 @@ impl ClassKeys<'_> {
         let at_40 = at_40 * 1e-6;
         let Some(temperature) = self.temperature else {
             problems.add(format!(
-                "{table}.viscosity_class is {class}, the viscosity at 40 degC; add {table}.temperature of the oil in \
+                "{table}.viscosity_class is {class}, the viscosity at 40 degC; add {table}.{key} of the oil in \
                  the contacts, or give {table}.viscosity at that temperature"
             ));
             return None;
         };
         problems.require(
             PLAUSIBLE_CELSIUS.contains(&temperature.celsius()),
-            &format!("{table}.temperature"),
+            &format!("{table}.{key}"),
             temperature,
-            "expected -60 degC to 300 degC",
+            "expected -60 degC to 300 degC of an oil by its class",
         );
         if let Some(at_100) = self.at_100 {
             problems.require(
@@ -131,7 +133,7 @@ impl ClassKeys<'_> {
             );
         } else if (temperature.celsius() - 40.0).abs() > 1e-9 {
             problems.add(format!(
-                "{table}.temperature is {temperature}; how an oil thins from 40 degC takes a second viscosity: add \
+                "{table}.{key} is {temperature}; how an oil thins from 40 degC takes a second viscosity: add \
                  {table}.viscosity_at_100 from its data sheet, or give {table}.viscosity at that temperature"
             ));
             return None;
