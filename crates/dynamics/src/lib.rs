@@ -25,9 +25,11 @@ pub mod solution;
 pub mod statics;
 
 // In motion, and about its equilibrium.
+mod following;
 pub mod modes;
 pub mod motion;
 pub mod moved_seat;
+mod moving_patches;
 mod orbit;
 pub mod stiffness;
 pub mod whirl;

@@ -17,7 +17,9 @@
 //! | -dp | = | H_dq  H_dd |  | dd |
 //! ```
 //!
-//! r is the load on q. Cost: the compliance of the contacts once more, and dense factors.
+//! r is the load on q. Patches that go along with their contacts ([`crate::moving_patches`]) move these by D dx besides
+//! and change the load on the ring by dw f: L^T C^-1 D and -dw f in the rows of d. Cost: the compliance of the contacts
+//! once more, and dense factors.
 
 use std::ops::Range;
 
@@ -63,6 +65,8 @@ pub struct SeatMatrices {
 struct MovedSeat<'l> {
     ports: &'l RingPorts,
     response: SeatResponse,
+    /// What the load of a patch that moves and grows does to the functions, `[n_balls][2][n_functions]`.
+    of_patches: Vec<f64>,
     first: usize,
 }
 
@@ -98,9 +102,12 @@ impl<'l> MovedSeats<'l> {
                 let first = all.n_functions;
                 all.n_functions += response.n_functions;
                 all.functions[side.index()] = Some(first..all.n_functions);
+                let patches = ports.patches.as_ref();
+                let of_patches = patches.and_then(|patches| ring.solver.seat_response(&patches.loads));
                 all.seats.push(MovedSeat {
                     ports,
                     response,
+                    of_patches: of_patches.map_or(Vec::new(), |found| found.motion),
                     first,
                 });
             }
@@ -116,11 +123,15 @@ impl<'l> MovedSeats<'l> {
     /// All rows.
     pub fn matrices(&self) -> SeatMatrices {
         let (own, n) = (self.linear.n, self.linear.n + self.n_functions);
-        let spread = |matrix: &[f64], factor: f64| {
+        let spread = |matrix: &[f64], ring_damping: Option<f64>| {
             let mut whole = vec![0.0; n * n];
             for seat in &self.seats {
                 seat.add(n, own + seat.first, |unknown| unknown, &mut whole);
+                if ring_damping.is_none() {
+                    seat.add_patches(n, own + seat.first, |unknown| unknown, &mut whole);
+                }
             }
+            let factor = ring_damping.unwrap_or(1.0);
             whole.iter_mut().for_each(|entry| *entry *= factor);
             for (row, to) in matrix.chunks_exact(own).zip(whole.chunks_exact_mut(n)) {
                 to[..own].copy_from_slice(row);
@@ -132,8 +143,12 @@ impl<'l> MovedSeats<'l> {
             n_kept: N_SHAFT + 2 * self.linear.n_balls,
             n_own: own,
             functions: self.functions.clone(),
-            stiffness: spread(&self.linear.stiffness, 1.0),
-            damping: self.linear.damping.as_ref().map(|c| spread(c, ring_damping)),
+            stiffness: spread(&self.linear.stiffness, None),
+            damping: self
+                .linear
+                .damping
+                .as_ref()
+                .map(|c| spread(c, Some(ring_damping))),
             ring_damping,
         }
     }
@@ -152,6 +167,7 @@ impl<'l> MovedSeats<'l> {
         }
         for seat in &self.seats {
             seat.add(n, n_kept + seat.first, place, &mut matrix);
+            seat.add_patches(n, n_kept + seat.first, place, &mut matrix);
         }
         let condensation = Condensation::new(n, n_kept + m, &matrix)
             .map_err(|source| DynamicsError::ContactSystem { source })?;
@@ -169,14 +185,7 @@ impl MovedSeat<'_> {
     /// their `place`.
     fn add(&self, n: usize, first: usize, place: impl Fn(usize) -> usize, matrix: &mut [f64]) {
         let (ports, response, m) = (self.ports, &self.response, self.response.n_functions);
-        // C^-1 L by rows of g.
-        let motion = &response.motion;
-        let pulled = |row: &[f64], function: usize| -> f64 {
-            let column = motion.iter().skip(function).step_by(m);
-            row.iter().zip(column).map(|(c, l)| c * l).sum()
-        };
-        let rows = ports.stiffness.chunks_exact(ports.unknowns.len());
-        let pulled: Vec<f64> = rows.flat_map(|row| (0..m).map(move |k| pulled(row, k))).collect();
+        let (motion, pulled) = (&response.motion, self.pulled());
         for (unknown, row) in ports.unknowns.clone().zip(pulled.chunks_exact(m)) {
             for (function, pull) in row.iter().enumerate() {
                 matrix[n * place(unknown) + first + function] = -pull;
@@ -188,6 +197,46 @@ impl MovedSeat<'_> {
                 let contacts = motion.chunks_exact(m).zip(pulled.chunks_exact(m));
                 let of_contacts: f64 = contacts.map(|(l, pull)| l[i] * pull[j]).sum();
                 matrix[n * (first + i) + first + j] = force + of_contacts;
+            }
+        }
+    }
+}
+
+impl MovedSeat<'_> {
+    /// C^-1 L by rows of g, then functions.
+    fn pulled(&self) -> Vec<f64> {
+        let (ports, m) = (self.ports, self.response.n_functions);
+        let pulled = |row: &[f64], function: usize| -> f64 {
+            let column = self.response.motion.iter().skip(function).step_by(m);
+            row.iter().zip(column).map(|(c, l)| c * l).sum()
+        };
+        let rows = ports.stiffness.chunks_exact(ports.unknowns.len());
+        rows.flat_map(|row| (0..m).map(move |k| pulled(row, k))).collect()
+    }
+
+    /// Adds what patches that go along do to its functions; all is as in [`Self::add`].
+    fn add_patches(&self, n: usize, first: usize, place: impl Fn(usize) -> usize, matrix: &mut [f64]) {
+        let m = self.response.n_functions;
+        let Some(patches) = &self.ports.patches else {
+            return;
+        };
+        let pulled = self.pulled();
+        let own = patches.moved.len() / self.ports.unknowns.len();
+        for function in 0..m {
+            let row = n * (first + function);
+            let by_motions = pulled.iter().skip(function).step_by(m);
+            for (pull, moved) in by_motions.zip(patches.moved.chunks_exact(own)) {
+                for (unknown, moved) in moved.iter().enumerate() {
+                    matrix[row + place(unknown)] += pull * moved;
+                }
+            }
+            for (k, places) in patches.places.iter().enumerate() {
+                let loads = self.of_patches.iter().skip(m * k + function).step_by(2 * m);
+                for (load, places) in loads.zip(places.chunks_exact(own)) {
+                    for (unknown, grown) in places.iter().enumerate() {
+                        matrix[row + place(unknown)] -= load * grown;
+                    }
+                }
             }
         }
     }

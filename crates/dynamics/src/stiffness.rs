@@ -15,9 +15,8 @@
 //! Forces on the shaft whose moments change as it tilts are no part of the bearing: their negative stiffness is apart
 //! ([`Linearisation::load_stiffness`]).
 //!
-//! **Frozen.** Patches keep place and size while the bearing moves, as in a step of Newton. A motion takes them along,
-//! which changes the compliance of a ring; against differences of whole equilibria that makes up to some 1e-4 of an
-//! entry on a coarse mesh (`tests/stiffness.rs`).
+//! **Patches** of flexible rings go along with their contacts, and grow with their forces, as in a motion
+//! ([`crate::moving_patches`]). So the matrix is the slope of whole equilibria, and slightly unsymmetric.
 //!
 //! **Damping** of slow motions, whose frequency is low beside those of balls and rings:
 //!
@@ -26,7 +25,8 @@
 //!   proportion to mass is left out ([`Linearisation::leaves_out_mass_damping`]), and so is the circulatory stiffness
 //!   of a ring that deforms while it turns, below `stiffness` x speed of its own share of K.
 //!
-//! Cost: the compliance of the contacts, one block solve per ring, and dense factors of 5 + 2 n_balls (1 + rings) rows.
+//! Cost: the compliance of twice the contacts, one block solve per ring, and dense factors of 5 + 2 n_balls
+//! (1 + rings) rows.
 
 use std::ops::Range;
 
@@ -37,21 +37,19 @@ use timer::SharedLaps;
 use crate::bearing::{BearingParts, CONTACTS, lengths};
 use crate::compliance;
 use crate::condensation::{Condensation, hold_sliding};
-use crate::effects::{Loads, Now, RingDamping};
+use crate::effects::RingDamping;
 use crate::error::DynamicsError;
+use crate::following::add_following_loads;
 use crate::interactions::closing_contact::ClosingContact;
 use crate::interactions::contact_damping::{ContactDamping, coefficient};
 use crate::interactions::raceway_contact::{Site, SiteState};
 use crate::loading::LoadCase;
 use crate::model::{ContactMode, Model};
+use crate::moving_patches::{PatchGrowth, add_moving_patches};
 use crate::solution::StaticSolution;
 use crate::statics::StaticSolver;
 use crate::system::{BodyId, ElasticPorts, LinkForces, LinkRows, System};
 
-/// Step of a contact angle in a difference quotient of loads, rad: their relative error is its square.
-const ANGLE_STEP: f64 = 1e-5;
-/// Step of an unknown in a difference quotient of contact angles, over the distance of the centres.
-const LENGTH_STEP: f64 = 1e-5;
 /// Dofs of the shaft.
 pub const N_SHAFT: usize = 5;
 /// Lengths of a ball's contacts.
@@ -96,6 +94,8 @@ pub(crate) struct RingPorts {
     pub unknowns: Range<usize>,
     /// Inverse compliance of the contacts, N/m, row-major.
     pub stiffness: Vec<f64>,
+    /// What its patches do as the bearing moves.
+    pub patches: Option<PatchGrowth>,
 }
 
 /// Matrices over the dofs of the shaft, then [radial, axial] of each ball, row-major.
@@ -130,10 +130,7 @@ impl Linearisation {
     ) -> Result<Linearisation, DynamicsError> {
         require_linear(model)?;
         let case = released(model, Some(solver), solution)?;
-        Ok(Linearisation {
-            ports: ports_of(&case.parts),
-            ..Linearisation::of_case(model, solution, &case, laws)?
-        })
+        Linearisation::of_case((model, Some(solver)), solution, &case, laws)
     }
 
     /// The same without damping on rings whose contacts have the compliance with which they were solved, which is that
@@ -141,11 +138,11 @@ impl Linearisation {
     pub fn as_solved(model: &Model, solution: &StaticSolution) -> Result<Linearisation, DynamicsError> {
         require_linear(model)?;
         let case = released(model, None, solution)?;
-        Linearisation::of_case(model, solution, &case, DampingLaws::default())
+        Linearisation::of_case((model, None), solution, &case, DampingLaws::default())
     }
 
     fn of_case(
-        model: &Model,
+        (model, solver): (&Model, Option<&StaticSolver>),
         solution: &StaticSolution,
         case: &LoadCase,
         laws: DampingLaws,
@@ -159,6 +156,8 @@ impl Linearisation {
         if case.loads.follows_angles {
             add_following_loads(model, solution, case, &x, &mut stiffness)?;
         }
+        let patches = solver.map(|solver| add_moving_patches(solver, solution, case, &x, &mut stiffness));
+        let patches = patches.transpose()?;
         let damped = laws.contacts.map(|law| damped_contacts(parts, &x, law));
         let damping = damping_of(parts, &system, &x, (damped.as_deref(), laws.rings));
         let n = system.n();
@@ -170,7 +169,7 @@ impl Linearisation {
             damping,
             ring_damping: laws.rings.map_or(0.0, |rings| rings.stiffness),
             n_balls: parts.balls.len(),
-            ports: [None, None],
+            ports: patches.map_or([None, None], |patches| ports_of(parts, patches)),
             closing: damped.map_or(Vec::new(), |damped| closing(parts, &system, &x, &damped)),
             load_stiffness: parts.shaft.tilted.map_or([[0.0; N_SHAFT]; N_SHAFT], |loads| {
                 loads.stiffness(solution.displacements.shaft)
@@ -279,16 +278,17 @@ pub(crate) fn released<'m>(
 }
 
 /// Where the rings meet their contacts.
-fn ports_of(parts: &BearingParts) -> [Option<RingPorts>; 2] {
+fn ports_of(parts: &BearingParts, mut patches: [Option<PatchGrowth>; 2]) -> [Option<RingPorts>; 2] {
     let system = parts.system();
     let mut number = 0;
-    [0, 1].map(|side| {
+    [0, 1].map(|side: usize| {
         let ports = parts.rings[side].as_ref()?;
         let unknowns = system.unknowns(BodyId::Elastic(number));
         number += 1;
         Some(RingPorts {
             unknowns,
             stiffness: ports.stiffness.clone(),
+            patches: patches[side].take(),
         })
     })
 }
@@ -308,78 +308,6 @@ fn hold_unloaded(parts: &BearingParts, n: usize, stiffness: &mut [f64]) {
     for i in balls.step_by(2) {
         hold_sliding(n, i, stiffness);
     }
-}
-
-/// Adds the growth of loads that follow the contact angles: d residual/d angle, of each site, times d angle/dx.
-fn add_following_loads(
-    model: &Model,
-    solution: &StaticSolution,
-    case: &LoadCase,
-    x: &[f64],
-    stiffness: &mut [f64],
-) -> Result<(), DynamicsError> {
-    let states = case.parts.states(x);
-    let angles: Vec<f64> = states.iter().map(|state| state.angle).collect();
-    let mut parts = case.parts.clone();
-    let mut residual = |angles: &[f64]| -> Result<Vec<f64>, DynamicsError> {
-        let now = Now {
-            angles: Some(angles),
-            ..solution.pose.now
-        };
-        let found = model.loads(&now)?;
-        parts.set_loads(&Loads {
-            ring_on_shaft: case.loads.ring_on_shaft,
-            ring_on_seat: case.loads.ring_on_seat,
-            ..found
-        });
-        Ok(parts.system().evaluate(x, &SharedLaps::default()).residual)
-    };
-    let mut of_angles = Vec::with_capacity(angles.len());
-    for site in 0..angles.len() {
-        let mut at = |sign: f64| {
-            let mut moved = angles.clone();
-            moved[site] += sign * ANGLE_STEP;
-            residual(&moved)
-        };
-        let (low, high) = (at(-1.0)?, at(1.0)?);
-        let change = low
-            .iter()
-            .zip(&high)
-            .map(|(low, high)| (high - low) / (2.0 * ANGLE_STEP));
-        of_angles.push(change.collect::<Vec<f64>>());
-    }
-    let n = x.len();
-    for column in 0..n {
-        for (growth, of_angle) in angle_growth(case, x, column).iter().zip(&of_angles) {
-            if *growth != 0.0 {
-                let rows = stiffness.iter_mut().skip(column).step_by(n);
-                rows.zip(of_angle).for_each(|(k, change)| *k += change * growth);
-            }
-        }
-    }
-    Ok(())
-}
-
-/// Growth of all contact angles with an unknown.
-fn angle_growth(case: &LoadCase, x: &[f64], unknown: usize) -> Vec<f64> {
-    let scale = case.model.geometry.groove_distance();
-    let is_tilt = (3..N_SHAFT).contains(&unknown);
-    let step = LENGTH_STEP
-        * if is_tilt {
-            scale / case.scales.tilt_arm
-        } else {
-            scale
-        };
-    let angles = |sign: f64| {
-        let mut moved = x.to_vec();
-        moved[unknown] += sign * step;
-        case.parts.states(&moved)
-    };
-    let (low, high) = (angles(-1.0), angles(1.0));
-    low.iter()
-        .zip(&high)
-        .map(|(low, high)| (high.angle - low.angle) / (2.0 * step))
-        .collect()
 }
 
 /// Damping over all unknowns, row-major; None where no law gives any.

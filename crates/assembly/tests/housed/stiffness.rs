@@ -186,7 +186,7 @@ fn differences_of(list: Assembly, least: f64) {
         worst_alone = worst_alone.max(error(&alone));
     }
     println!("{worst:e}, without what bearings do to each other {worst_alone:e}");
-    assert!(worst < 3e-4 && worst_alone > least, "{worst:e} {worst_alone:e}");
+    assert!(worst < 2.5e-4 && worst_alone > least, "{worst:e} {worst_alone:e}");
 }
 
 /// Wrong: the entry of a bearing, or what it does to the other, would not be that of the body with both in it. The
@@ -233,7 +233,9 @@ fn differences_of_places(list: Assembly) {
             let column = block.map(|row| row[2]);
             let error = off(&column, &expected);
             println!("{loaded} by {moved}: {error:e} of {expected:?}");
-            assert!(error < 3e-4, "{loaded} by {moved}: {error:e}");
+            // What one does to the other may be a thousandth of what it does to itself, and differences lose as much.
+            let limit = if loaded == moved { 1e-4 } else { 5e-4 };
+            assert!(error < limit, "{loaded} by {moved}: {error:e}");
         }
     }
     let [there, back] = [(0, 1), (1, 0)].map(|pair| {
@@ -242,10 +244,8 @@ fn differences_of_places(list: Assembly) {
     });
     let mirrored: Vec<f64> = (0..25).map(|k| back[k % 5][k / 5]).collect();
     let error = off(&there.concat(), &mirrored);
-    assert!(
-        error < 1e-8,
-        "loads that follow nothing have an energy: {error:e}"
-    );
+    // All but the patches, which go along with their contacts, has an energy.
+    assert!(error < 1e-4, "{error:e}");
 }
 
 /// Contacts and rings that damp.
