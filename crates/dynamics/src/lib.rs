@@ -29,7 +29,7 @@ mod following;
 pub mod modes;
 pub mod motion;
 pub mod moved_seat;
-mod moving_patches;
+pub mod moving_patches;
 mod orbit;
 pub mod stiffness;
 pub mod whirl;
