@@ -452,10 +452,12 @@ fn a_missing_table_and_a_mesh_that_is_no_file_are_said() {
 #[test]
 fn a_missing_mesh_is_reported_as_typed_and_as_resolved() {
     let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("scene.toml");
+    let scenes = folder.path().join("scenes");
+    std::fs::create_dir(&scenes).unwrap();
+    let path = scenes.join("scene.toml");
     std::fs::write(&path, EXAMPLE).unwrap();
     let message = Scene::load(&path, &[]).unwrap_err().to_string();
-    let resolved = folder.path().join("../meshes/7010c_inner.msh");
+    let resolved = scenes.join("../meshes/7010c_inner.msh");
     let expected = format!(
         "inner.mesh is \"../meshes/7010c_inner.msh\", but there is no file {}; build it with \"raceway mesh {}\", \
          which needs Gmsh, or correct the path",
