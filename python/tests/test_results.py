@@ -167,7 +167,8 @@ def test_stiffness_is_a_matrix_that_is_the_slope_of_the_load(runs):
     results = runs.stiffness()
     matrix = results.stiffness["stiffness"]
     assert matrix.shape == (5, 5) and results.stiffness["order"][2] == "z"
-    assert np.allclose(matrix, matrix.T, rtol=1e-6, atol=1e-6 * abs(matrix).max())
+    # Patches of flexible rings go along with their contacts and have no energy of their own: docs/stiffness.md.
+    assert np.allclose(matrix, matrix.T, rtol=2e-3, atol=1e-6 * abs(matrix).max())
     # An independent way: half the difference of the loads of two equilibria over that of the displacements.
     loads = (1990.0, 2010.0)
     places = []
@@ -175,8 +176,7 @@ def test_stiffness_is_a_matrix_that_is_the_slope_of_the_load(runs):
         near = runs.of(f"near_{load:g}", "7010c_preload.toml", {"effects.axial_force.value": f"{load} N"})
         places.append(near.summary["shaft"]["displacement_m"][2])
     slope = (loads[1] - loads[0]) / (places[1] - places[0])
-    # Patches of flexible rings keep place and size in the matrix: docs/stiffness.md, 1.1e-4 with clamped rings.
-    assert np.isclose(matrix[2, 2], slope, rtol=2e-3)
+    assert np.isclose(matrix[2, 2], slope, rtol=1e-4)
 
 
 def test_a_campbell_folder_opens(runs):
