@@ -19,7 +19,7 @@ const LENGTH_STEP: f64 = 1e-5;
 pub(crate) fn add_following_loads(
     model: &Model,
     solution: &StaticSolution,
-    case: &LoadCase,
+    (case, growths): (&LoadCase, &ContactGrowths),
     x: &[f64],
     stiffness: &mut [f64],
 ) -> Result<(), DynamicsError> {
@@ -53,17 +53,21 @@ pub(crate) fn add_following_loads(
             .map(|(low, high)| (high - low) / (2.0 * ANGLE_STEP));
         of_angles.push(change.collect::<Vec<f64>>());
     }
-    let (n, growths) = (x.len(), ContactGrowths::new(case, x));
     for (site, of_angle) in of_angles.iter().enumerate() {
-        for column in 0..n {
+        for column in 0..x.len() {
             let [angle, _] = growths.of(site, column);
             if angle != 0.0 {
-                let rows = stiffness.iter_mut().skip(column).step_by(n);
-                rows.zip(of_angle).for_each(|(k, change)| *k += change * angle);
+                add_to_column(stiffness, (x.len(), column), of_angle, angle);
             }
         }
     }
     Ok(())
+}
+
+/// Adds a change times a factor to a column of a row-major matrix of `n` columns.
+pub(crate) fn add_to_column(matrix: &mut [f64], (n, column): (usize, usize), change: &[f64], factor: f64) {
+    let rows = matrix.iter_mut().skip(column).step_by(n);
+    rows.zip(change).for_each(|(sum, change)| *sum += change * factor);
 }
 
 /// Growth of contact angles, rad, and of contact forces, N, with the unknowns.

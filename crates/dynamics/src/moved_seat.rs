@@ -65,6 +65,8 @@ pub struct SeatMatrices {
 struct MovedSeat<'l> {
     ports: &'l RingPorts,
     response: SeatResponse,
+    /// C^-1 L by rows of g, then functions.
+    pulled: Vec<f64>,
     /// What the load of a patch that moves and grows does to the functions, `[n_balls][2][n_functions]`.
     of_patches: Vec<f64>,
     first: usize,
@@ -106,6 +108,7 @@ impl<'l> MovedSeats<'l> {
                 let of_patches = patches.and_then(|patches| ring.solver.seat_response(&patches.loads));
                 all.seats.push(MovedSeat {
                     ports,
+                    pulled: pulled(ports, &response),
                     response,
                     of_patches: of_patches.map_or(Vec::new(), |found| found.motion),
                     first,
@@ -185,7 +188,7 @@ impl MovedSeat<'_> {
     /// their `place`.
     fn add(&self, n: usize, first: usize, place: impl Fn(usize) -> usize, matrix: &mut [f64]) {
         let (ports, response, m) = (self.ports, &self.response, self.response.n_functions);
-        let (motion, pulled) = (&response.motion, self.pulled());
+        let (motion, pulled) = (&response.motion, &self.pulled);
         for (unknown, row) in ports.unknowns.clone().zip(pulled.chunks_exact(m)) {
             for (function, pull) in row.iter().enumerate() {
                 matrix[n * place(unknown) + first + function] = -pull;
@@ -200,19 +203,6 @@ impl MovedSeat<'_> {
             }
         }
     }
-}
-
-impl MovedSeat<'_> {
-    /// C^-1 L by rows of g, then functions.
-    fn pulled(&self) -> Vec<f64> {
-        let (ports, m) = (self.ports, self.response.n_functions);
-        let pulled = |row: &[f64], function: usize| -> f64 {
-            let column = self.response.motion.iter().skip(function).step_by(m);
-            row.iter().zip(column).map(|(c, l)| c * l).sum()
-        };
-        let rows = ports.stiffness.chunks_exact(ports.unknowns.len());
-        rows.flat_map(|row| (0..m).map(move |k| pulled(row, k))).collect()
-    }
 
     /// Adds what patches that go along do to its functions; all is as in [`Self::add`].
     fn add_patches(&self, n: usize, first: usize, place: impl Fn(usize) -> usize, matrix: &mut [f64]) {
@@ -220,11 +210,10 @@ impl MovedSeat<'_> {
         let Some(patches) = &self.ports.patches else {
             return;
         };
-        let pulled = self.pulled();
         let own = patches.moved.len() / self.ports.unknowns.len();
         for function in 0..m {
             let row = n * (first + function);
-            let by_motions = pulled.iter().skip(function).step_by(m);
+            let by_motions = self.pulled.iter().skip(function).step_by(m);
             for (pull, moved) in by_motions.zip(patches.moved.chunks_exact(own)) {
                 for (unknown, moved) in moved.iter().enumerate() {
                     matrix[row + place(unknown)] += pull * moved;
@@ -240,6 +229,17 @@ impl MovedSeat<'_> {
             }
         }
     }
+}
+
+/// C^-1 L of a ring, by rows of g, then functions.
+fn pulled(ports: &RingPorts, response: &SeatResponse) -> Vec<f64> {
+    let m = response.n_functions;
+    let pulled = |row: &[f64], function: usize| -> f64 {
+        let column = response.motion.iter().skip(function).step_by(m);
+        row.iter().zip(column).map(|(c, l)| c * l).sum()
+    };
+    let rows = ports.stiffness.chunks_exact(ports.unknowns.len());
+    rows.flat_map(|row| (0..m).map(move |k| pulled(row, k))).collect()
 }
 
 impl SeatStiffness {

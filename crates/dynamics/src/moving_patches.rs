@@ -20,7 +20,7 @@ use contact::{Meridian, NodalWeights, Side};
 use timer::SharedLaps;
 
 use crate::error::DynamicsError;
-use crate::following::ContactGrowths;
+use crate::following::{ContactGrowths, add_to_column};
 use crate::footprint::place;
 use crate::interactions::raceway_contact::{RacewayContacts, SiteState};
 use crate::loading::LoadCase;
@@ -73,7 +73,7 @@ struct Moving<'a> {
 pub(crate) fn add_moving_patches(
     solver: &StaticSolver,
     solution: &StaticSolution,
-    case: &LoadCase,
+    (case, growths): (&LoadCase, &ContactGrowths),
     x: &[f64],
     stiffness: &mut [f64],
 ) -> Result<[Option<PatchGrowth>; 2], DynamicsError> {
@@ -84,11 +84,10 @@ pub(crate) fn add_moving_patches(
         states: case.parts.states(x),
         forces: case.parts.forces_at(&solution.displacements),
     };
-    let growths = ContactGrowths::new(case, x);
     let mut found = [None, None];
     for side in Side::BOTH {
         if let (Some(ring), Some(field)) = (solver.ring(side), &solution.elastic[side.index()]) {
-            found[side.index()] = Some(moving.of_ring((side, ring), field, &growths, stiffness)?);
+            found[side.index()] = Some(moving.of_ring((side, ring), field, growths, stiffness)?);
         }
     }
     Ok(found)
@@ -131,12 +130,8 @@ impl Moving<'_> {
                 let size = (at_place + patch.force_by_angle * angle) / (1.0 - patch.force_by_size);
                 for (k, grown) in [angle, size].into_iter().enumerate() {
                     growth.places[k][n * ball + column] = grown;
-                    let rows = stiffness.iter_mut().skip(column).step_by(n);
-                    rows.zip(&patch.residual[k])
-                        .for_each(|(sum, change)| *sum += change * grown);
-                    let rows = growth.moved.iter_mut().skip(column).step_by(n);
-                    rows.zip(&patch.moved[k])
-                        .for_each(|(sum, change)| *sum += change * grown);
+                    add_to_column(stiffness, (n, column), &patch.residual[k], grown);
+                    add_to_column(&mut growth.moved, (n, column), &patch.moved[k], grown);
                 }
             }
         }

@@ -39,7 +39,7 @@ use crate::compliance;
 use crate::condensation::{Condensation, hold_sliding};
 use crate::effects::RingDamping;
 use crate::error::DynamicsError;
-use crate::following::add_following_loads;
+use crate::following::{ContactGrowths, add_following_loads};
 use crate::interactions::closing_contact::ClosingContact;
 use crate::interactions::contact_damping::{ContactDamping, coefficient};
 use crate::interactions::raceway_contact::{Site, SiteState};
@@ -153,10 +153,14 @@ impl Linearisation {
         let mut stiffness = system.body_tangent(&x);
         system.add_link_tangents(&x, &at.links, &mut stiffness);
         system.add_curvatures(&x, &at.links, &mut stiffness);
-        if case.loads.follows_angles {
-            add_following_loads(model, solution, case, &x, &mut stiffness)?;
+        let follows = case.loads.follows_angles;
+        let growths = (follows || solver.is_some()).then(|| ContactGrowths::new(case, &x));
+        if let Some(growths) = growths.as_ref().filter(|_| follows) {
+            add_following_loads(model, solution, (case, growths), &x, &mut stiffness)?;
         }
-        let patches = solver.map(|solver| add_moving_patches(solver, solution, case, &x, &mut stiffness));
+        let patches = solver.zip(growths.as_ref()).map(|(solver, growths)| {
+            add_moving_patches(solver, solution, (case, growths), &x, &mut stiffness)
+        });
         let patches = patches.transpose()?;
         let damped = laws.contacts.map(|law| damped_contacts(parts, &x, law));
         let damping = damping_of(parts, &system, &x, (damped.as_deref(), laws.rings));

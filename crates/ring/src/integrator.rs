@@ -139,13 +139,16 @@ impl Integrator {
     pub fn update(&self, dt: f64, dw: f64, v0: f64, a0: f64) -> [f64; 2] {
         // Of many numbers the quotients are found once.
         let (rate, share) = (1.0 / (self.beta * dt * dt), self.old[0] / self.beta);
-        let a1 = (dw - dt * v0) * rate - share * a0;
-        [v0 + dt * (self.old[1] * a0 + self.gamma * a1), a1]
+        self.ended(dt, v0, a0, (dw - dt * v0) * rate - share * a0)
     }
 
     /// Velocity and acceleration at the end of a step with the weighted acceleration `mean`.
     pub fn update_by(&self, dt: f64, mean: f64, v0: f64, a0: f64) -> [f64; 2] {
-        let a1 = (mean - self.alpha_m * a0) / (1.0 - self.alpha_m);
+        self.ended(dt, v0, a0, (mean - self.alpha_m * a0) / (1.0 - self.alpha_m))
+    }
+
+    /// Velocity and acceleration at the end of a step, of which the acceleration is `a1`.
+    fn ended(&self, dt: f64, v0: f64, a0: f64, a1: f64) -> [f64; 2] {
         [v0 + dt * (self.old[1] * a0 + self.gamma * a1), a1]
     }
 }
