@@ -43,6 +43,20 @@ pub fn assert_same_stamps(dir: &Dir, whole: &str, cut: &str) {
     }
 }
 
+/// Runs the pair into a folder with a limit on the size of its files, at which it ends. In the folder `alone` one
+/// bearing was faster than the other: it has the step with which the run in `whole` begins.
+fn ends_early(dir: &Dir, limit: u32, out: &str, first_step: u64) {
+    let outcome = dir.raceway_with_small_files(limit, &["run", "pair.toml", "--out", out]);
+    assert_eq!(outcome.code, Some(2), "{}", outcome.stderr);
+    assert!(outcome.stderr.contains("File too large"), "{}", outcome.stderr);
+    if out == "alone" {
+        let step = step_file_name(first_step);
+        let [from, to] = ["whole", "alone"].map(|out| dir.path(&format!("{out}/front/{step}")));
+        std::fs::copy(from, to).unwrap();
+        std::fs::remove_file(dir.path("alone/front/.raceway.starting")).unwrap();
+    }
+}
+
 /// Wrong: a list that ended before its first step could neither go on nor be run again, or running it again would take
 /// files of the user or results with it. A limit on the size of files stands for the end: no mesh file fits, or no
 /// step.
@@ -53,19 +67,7 @@ fn a_list_that_ended_before_its_first_step_is_run_again() {
         let run = |out: &'static str| ["run", "pair.toml", "--out", out];
         succeeds(&dir, &run("whole"));
         for (limit, out) in [(1, "early"), (16, "late"), (16, "alone")] {
-            let outcome = dir.raceway_with_small_files(limit, &run(out));
-            assert_eq!(outcome.code, Some(2), "{}", outcome.stderr);
-            assert!(outcome.stderr.contains("File too large"), "{}", outcome.stderr);
-            if out == "alone" {
-                // One bearing was faster than the other.
-                let step = "front/step_000000.hdf";
-                std::fs::copy(
-                    dir.path(&format!("whole/{step}")),
-                    dir.path(&format!("alone/{step}")),
-                )
-                .unwrap();
-                std::fs::remove_file(dir.path("alone/front/.raceway.starting")).unwrap();
-            }
+            ends_early(&dir, limit, out, 0);
             let refused = dir.raceway(&["resume", out]);
             assert_eq!(refused.code, Some(2));
             let expected = format!(
@@ -91,15 +93,7 @@ fn modes_of_a_list_that_ended_early_are_run_again() {
     let run = |out: &'static str| ["run", "pair.toml", "--out", out];
     succeeds(&dir, &run("whole"));
     for (limit, out) in [(1, "early"), (16, "late"), (16, "alone")] {
-        let outcome = dir.raceway_with_small_files(limit, &run(out));
-        assert_eq!(outcome.code, Some(2), "{}", outcome.stderr);
-        assert!(outcome.stderr.contains("File too large"), "{}", outcome.stderr);
-        if out == "alone" {
-            let step = "front/step_000001.hdf";
-            let [from, to] = ["whole", "alone"].map(|out| dir.path(&format!("{out}/{step}")));
-            std::fs::copy(from, to).unwrap();
-            std::fs::remove_file(dir.path("alone/front/.raceway.starting")).unwrap();
-        }
+        ends_early(&dir, limit, out, 1);
         let said = succeeds(&dir, &run(out)).stderr;
         let expected = format!("the run in {out} ended before its first step was whole in all bearings");
         assert!(said.contains(&expected), "{said}");
