@@ -31,6 +31,7 @@ pub mod motion;
 pub mod moved_seat;
 pub mod moving_patches;
 mod orbit;
+mod patches_beside;
 pub mod stiffness;
 pub mod whirl;
 

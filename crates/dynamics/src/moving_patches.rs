@@ -14,23 +14,16 @@
 //! Cost: the compliance of two patches for each contact, its own and one whose two directions are dw f over alpha and
 //! over Q.
 
-use std::collections::BTreeMap;
-
 use contact::{Meridian, NodalWeights, Side};
 use timer::SharedLaps;
 
 use crate::error::DynamicsError;
 use crate::following::{ContactGrowths, add_to_column};
-use crate::footprint::place;
-use crate::interactions::raceway_contact::{RacewayContacts, SiteState};
+use crate::interactions::raceway_contact::{Site, SiteState};
 use crate::loading::LoadCase;
+use crate::patches_beside::{KINDS, PatchesBeside, StandingContacts};
 use crate::solution::StaticSolution;
 use crate::statics::{StaticRing, StaticSolver};
-
-/// Step of a contact angle, rad: a small part of an element across the groove.
-const ANGLE_STEP: f64 = 1e-3;
-/// Step of a force over it.
-const SIZE_STEP: f64 = 1e-2;
 
 /// What the patches of a ring do as the bearing moves.
 pub(crate) struct PatchGrowth {
@@ -52,12 +45,6 @@ struct OfPatch {
     force_by_angle: f64,
     /// The same with the force by which its size goes.
     force_by_size: f64,
-}
-
-/// Patches of a ring that stand beside those of an equilibrium.
-struct Beside {
-    contacts: RacewayContacts,
-    weights: Vec<NodalWeights>,
 }
 
 /// An equilibrium whose patches are moved.
@@ -102,11 +89,14 @@ impl Moving<'_> {
         growths: &ContactGrowths,
         stiffness: &mut [f64],
     ) -> Result<PatchGrowth, DynamicsError> {
-        let at = |angle: f64, size: f64| self.beside((side, ring), angle, size);
-        let beside = [
-            [at(-ANGLE_STEP, 1.0)?, at(ANGLE_STEP, 1.0)?],
-            [at(0.0, 1.0 - SIZE_STEP)?, at(0.0, 1.0 + SIZE_STEP)?],
-        ];
+        let standing = StandingContacts {
+            model: self.case.model,
+            time: self.case.pose.now.time,
+            contacts: &self.case.parts.contacts,
+            states: &self.states,
+            forces: &self.forces,
+        };
+        let beside = PatchesBeside::new(&standing, side, &ring.raceway)?;
         let (n, n_balls) = (self.x.len(), self.case.model.geometry.n_balls);
         let loads = self.growths_of_loads(side, &beside);
         let own = self
@@ -121,7 +111,7 @@ impl Moving<'_> {
             loads,
             places: [(); 2].map(|()| vec![0.0; n_balls * n]),
         };
-        for ball in (0..n_balls).filter(|ball| !self.is_unloaded(2 * ball + side.index())) {
+        for ball in (0..n_balls).filter(|ball| beside.is_loaded(*ball)) {
             let patch = self.of_patch((side, ball), &beside, (field, &compliance));
             let site = 2 * ball + side.index();
             for column in 0..n {
@@ -139,18 +129,11 @@ impl Moving<'_> {
     }
 
     /// Growth of the load of each contact on its ring with angle and size of the patch.
-    fn growths_of_loads(&self, side: Side, beside: &[[Beside; 2]; 2]) -> Vec<NodalWeights> {
+    fn growths_of_loads(&self, side: Side, beside: &PatchesBeside) -> Vec<NodalWeights> {
         let forces = self.case.ring_forces(&self.forces);
-        let of_ball = |ball: usize| {
-            let site = 2 * ball + side.index();
-            if self.is_unloaded(site) {
-                return self.solution.footprints(side)[ball].weights.clone();
-            }
-            let pairs = [0, 1].map(|k| {
-                let pair = beside[k].each_ref().map(|patches| &patches.weights[ball]);
-                (pair, self.step(k, site))
-            });
-            growth_of_load(pairs, forces[site])
+        let of_ball = |ball: usize| match beside.is_loaded(ball) {
+            true => beside.growth_of_load(ball, forces[2 * ball + side.index()]),
+            false => self.solution.footprints(side)[ball].weights.clone(),
         };
         (0..self.case.model.geometry.n_balls).map(of_ball).collect()
     }
@@ -159,23 +142,27 @@ impl Moving<'_> {
     fn of_patch(
         &self,
         (side, ball): (Side, usize),
-        beside: &[[Beside; 2]; 2],
+        beside: &PatchesBeside,
         (field, compliance): (&[f64], &[f64]),
     ) -> OfPatch {
-        let (n, site) = (2 * self.case.model.geometry.n_balls, 2 * ball + side.index());
-        let moved = [0, 1].map(|k| {
+        let n = 2 * self.case.model.geometry.n_balls;
+        let moved = KINDS.map(|k| {
             let of_row = |row: usize| compliance[2 * n * row + n + 2 * ball + k];
             let mut moved: Vec<f64> = (0..n).map(of_row).collect();
-            let [low, high] = beside[k]
-                .each_ref()
-                .map(|patch| patch.weights[ball].measure(field));
-            for i in 0..2 {
-                moved[2 * ball + i] += (high[i] - low[i]) / self.step(k, site);
-            }
+            let own = beside.growth_of_motion(k, ball, field).to_array();
+            own.iter()
+                .enumerate()
+                .for_each(|(i, more)| moved[2 * ball + i] += more);
             moved
         });
-        let [angle, size] =
-            [0, 1].map(|k| self.change((side, ball), &beside[k], &moved[k], self.step(k, site)));
+        let [angle, size] = KINDS.map(|k| {
+            self.change(
+                (side, ball),
+                beside.sites(k, ball),
+                &moved[k],
+                beside.step(k, ball),
+            )
+        });
         OfPatch {
             residual: [angle.0, size.0],
             moved,
@@ -184,58 +171,18 @@ impl Moving<'_> {
         }
     }
 
-    /// Distance of the patches beside a loaded contact: of the first kind of angles, rad, of the second of forces, N.
-    fn step(&self, kind: usize, site: usize) -> f64 {
-        match kind {
-            0 => 2.0 * ANGLE_STEP,
-            _ => 2.0 * SIZE_STEP * self.forces[site].norm(),
-        }
-    }
-
-    fn is_unloaded(&self, site: usize) -> bool {
-        self.forces[site] == Meridian::default()
-    }
-
-    /// Patches of a ring at contact angles that are larger by `angle` and of forces `size` times as large.
-    fn beside(
-        &self,
-        (side, ring): (Side, &StaticRing),
-        angle: f64,
-        size: f64,
-    ) -> Result<Beside, DynamicsError> {
-        let model = self.case.model;
-        let mounting = model.mounting.at(self.case.pose.now.time);
-        let mut states = self.states.clone();
-        states.iter_mut().for_each(|state| state.angle += angle);
-        let forces: Vec<Meridian> = self.forces.iter().map(|f| f.map(|x| size * x)).collect();
-        let mut contacts = self.case.parts.contacts.clone();
-        let feet = place(
-            model,
-            &mounting,
-            side,
-            &ring.raceway,
-            &mut contacts,
-            &states,
-            &forces,
-        )?;
-        Ok(Beside {
-            contacts,
-            weights: feet.into_iter().map(|foot| foot.weights).collect(),
-        })
-    }
-
     /// Growth of the residual, and of the contact's own force, between two places of one patch.
     fn change(
         &self,
         (side, ball): (Side, usize),
-        patches: &[Beside; 2],
+        patches: [&Site; 2],
         moved: &[f64],
         step: f64,
     ) -> (Vec<f64>, f64) {
         let site = 2 * ball + side.index();
         let at = |place: usize| {
             let mut parts = self.case.parts.clone();
-            parts.contacts.sites[site] = patches[place].contacts.sites[site].clone();
+            parts.contacts.sites[site] = patches[place].clone();
             let mut rings = parts.rings.clone();
             let share = [-0.5, 0.5][place] * step;
             if let Some(ports) = &mut rings[side.index()] {
@@ -250,22 +197,4 @@ impl Moving<'_> {
         let change = low.iter().zip(&high).map(|(low, high)| (high - low) / step);
         (change.collect(), (high_force - low_force) / step)
     }
-}
-
-/// The load dw f of a contact whose patch moves, per radian, as the first direction, and per newton of its size as the
-/// second; from the weights below and above, apart by the steps.
-fn growth_of_load(pairs: [([&NodalWeights; 2], f64); 2], force: Meridian) -> NodalWeights {
-    let mut sums: BTreeMap<usize, [[f64; 3]; 2]> = BTreeMap::new();
-    for (k, (pair, step)) in pairs.into_iter().enumerate() {
-        for (weights, sign) in pair.into_iter().zip([-1.0, 1.0]) {
-            for (&node, [radial, axial]) in weights.nodes.iter().zip(&weights.coefficients) {
-                let sum = &mut sums.entry(node).or_default()[k];
-                for i in 0..3 {
-                    sum[i] += sign * (radial[i] * force.radial + axial[i] * force.axial) / step;
-                }
-            }
-        }
-    }
-    let (nodes, coefficients) = sums.into_iter().unzip();
-    NodalWeights { nodes, coefficients }
 }

@@ -8,7 +8,8 @@ use crate::support::{Case, equilibrium, on_threads};
 use contact::Side;
 use dynamics::modes::{bearing_modes, ring_modes};
 use dynamics::{
-    ContactMode, Hold, Mode, ModeSet, Model, ModesSettings, RingModel, RingSupport, StaticSolution,
+    ContactMode, DampingLaws, Hold, Linearisation, Mode, ModeSet, Model, ModesSettings, RingModel,
+    RingSupport, StaticSolution, StaticSolver,
 };
 use mesh::{ElementKind, Section, revolve};
 
@@ -383,8 +384,8 @@ fn a_heavy_shaft_swings_on_the_static_stiffness() {
         println!("{hold:?}: {:?}, static {axial} {radial}", frequencies(&set));
         let mut expected = [axial, radial, radial];
         expected.sort_by(f64::total_cmp);
-        // Rings and balls swing along: their mass over the shaft's is 4e-5, patches that move with the load 1e-4.
-        assert!(largest_difference(&frequencies(&set), &expected) < 1e-3);
+        // Rings and balls swing along: their mass over the shaft's is 4e-5.
+        assert!(largest_difference(&frequencies(&set), &expected) < 4e-5);
         assert!(set.modes.iter().all(|m| m.kinetic[3] > 0.999));
     }
 }
@@ -415,11 +416,52 @@ fn a_heavy_rotor_tilts_on_the_static_stiffness() {
         let (model, solution) = build(0.0);
         let set = loaded(&model, &solution, 2);
         let tilt = |moment: f64| build(moment).1.displacements.shaft[3];
-        let expected = (2.0 / (tilt(1.0) - tilt(-1.0)) / inertia).sqrt() / TAU;
+        let moment = 0.1;
+        let expected = (2.0 * moment / (tilt(moment) - tilt(-moment)) / inertia).sqrt() / TAU;
         println!("{hold:?}: {:?}, static {expected}", frequencies(&set));
-        // Patches that move with the load change the static slope of a floating bore by 2e-3.
-        assert!(largest_difference(&frequencies(&set), &[expected; 2]) < 3e-3);
+        // The slope is not quite straight: with a tenth of the moment a hundredth of the difference is left.
+        assert!(largest_difference(&frequencies(&set), &[expected; 2]) < 3e-5);
         assert!(set.modes.iter().all(|m| m.kinetic[3] > 0.999));
+    }
+}
+
+/// Wrong: patches of a bearing that vibrates would stay where they are, as those of its stiffness do not. A rotor of
+/// much mass and inertia: all five frequencies from the stiffness of the bearing, which has patches that go along.
+#[test]
+fn patches_go_along_as_in_the_stiffness() {
+    let (mass, inertia) = (1e4, 1e2);
+    for hold in [Hold::Clamped, Hold::MeanMotion] {
+        let case = Case {
+            radial: 1000.0,
+            free_tilt: true,
+            ..Case::axial(2000.0)
+        };
+        let mut model = case.flexible(ContactMode::Patch, SMALL, hold);
+        model.shaft_mass = mass;
+        model.shaft_inertia.transverse = inertia;
+        let mut solver = StaticSolver::new(&model).unwrap();
+        let solution = solver.solve(&model, None).unwrap();
+        let settings = ModesSettings {
+            shift: Some(20.0),
+            ..settings(5)
+        };
+        let found = frequencies(&bearing_modes(&model, &solution, settings, &mut |_| ()).unwrap());
+        let masses = [mass, mass, mass, inertia, inertia];
+        let of = |bearing: Linearisation| {
+            let k = bearing.stiffness().unwrap();
+            let half = |i: usize| [0, 1, 2, 3, 4].map(|j| 0.5 * (k[i][j] + k[j][i]));
+            let rows = [0, 1, 2, 3, 4].map(half);
+            let mut expected = small_frequencies(&rows.each_ref().map(|row| row.as_slice()), &masses);
+            expected.sort_by(f64::total_cmp);
+            expected
+        };
+        let moving = of(Linearisation::new(&model, &solver, &solution, DampingLaws::default()).unwrap());
+        let stays = of(Linearisation::as_solved(&model, &solution).unwrap());
+        let [error, before] = [&moving, &stays].map(|expected| largest_difference(&found, expected));
+        println!(
+            "{hold:?}: {found:?}, {moving:?}, {stays:?}: {error:.1e} off, {before:.1e} of patches that stay"
+        );
+        assert!(error < 2e-1 && before > 1e-4, "{error} {before}");
     }
 }
 

@@ -163,9 +163,12 @@ fn steps_of(analysis: &Analysis, bearings: &[BearingMemory<'_>]) -> Option<usize
     Some(program + kept.max(making))
 }
 
+/// Vectors of a ring per ball on it: two directions of the contact, and two in which its patch changes.
+const COLUMNS_PER_BALL: usize = 4;
+
 /// Forecast of the largest resident memory of the natural modes of a list, bytes: each ring has factor, stiffness and
-/// mass of its own, and the search keeps vectors over all of them. Good to a quarter: 742 MB for 865 MB, two bearings
-/// with rings of 51 000 dofs each, 20 modes.
+/// mass of its own, and the search keeps vectors over all of them. Good to a tenth: 1338 MB for 1213 MB, two bearings
+/// in a housing with rings of 51 000 dofs each, 20 modes.
 pub fn forecast_modes_of_list(wanted: &Modes, bearings: &[BearingMemory<'_>]) -> usize {
     let models = bearings.iter().map(|bearing| bearing.model);
     let mut sum = forecast_peak([None, None], 1) + vectors_of_list(wanted, models);
@@ -194,20 +197,18 @@ fn models_of<'m>(bearings: &[BearingMemory<'m>]) -> impl Iterator<Item = &'m Mod
     bearings.iter().map(|bearing| bearing.model)
 }
 
-/// Vectors of the search for modes of a list, its restart included, bytes.
+/// Vectors of the search for modes of a list, its restart included, and those of contacts and their patches, bytes.
 fn vectors_of_list<'m>(wanted: &Modes, models: impl Iterator<Item = &'m Model>) -> usize {
-    let (mut n_balls, mut n_dofs) = (0, 0);
+    let (mut n_balls, mut n_dofs, mut of_contacts) = (0, 0, 0);
     for model in models {
+        let rings = model.rings.iter().flatten();
+        let own = rings.map(|ring| ring.mesh.n_dofs()).sum::<usize>();
         n_balls += model.geometry.n_balls;
-        n_dofs += model
-            .rings
-            .iter()
-            .flatten()
-            .map(|ring| ring.mesh.n_dofs())
-            .sum::<usize>();
+        n_dofs += own;
+        of_contacts += COLUMNS_PER_BALL * model.geometry.n_balls * own;
     }
     let [_, n_vectors] = basis_sizes(wanted.number, n_balls);
-    2 * size_of::<f64>() * n_vectors * n_dofs
+    size_of::<f64>() * (2 * n_vectors * n_dofs + of_contacts)
 }
 
 /// Fails if a list, of which nothing is factored yet, needs more memory than there is for it by its forecast, as

@@ -164,8 +164,8 @@ pub fn forecast(
 }
 
 /// Forecast of the largest resident memory of the search for natural modes, bytes: factor, stiffness and mass of what
-/// vibrates, the vectors of the search, its restart included, two blocks of a vector per ball on their way through a
-/// bearing, and what is written. Measured: -5 to +2 %.
+/// vibrates, the vectors of the search, its restart included, four blocks of a vector per ball for the contacts of a
+/// bearing and their patches, and what is written. Measured: -6 to +5 %.
 fn forecast_modes(wanted: &Modes, (scene, model): (&Scene, &Model), rings: [Option<RingMemory>; 2]) -> usize {
     let n_balls = model.geometry.n_balls;
     let [alone, bearing] = basis_sizes(wanted.number, n_balls);
@@ -178,7 +178,7 @@ fn forecast_modes(wanted: &Modes, (scene, model): (&Scene, &Model), rings: [Opti
     let of_body = |body: &ModeBody| match body {
         ModeBody::Inner => of_rings(&Side::BOTH[..1], 2 * alone),
         ModeBody::Outer => of_rings(&Side::BOTH[1..], 2 * alone),
-        ModeBody::Bearing => of_rings(&Side::BOTH, 2 * (bearing + n_balls)) + tied_bytes(model),
+        ModeBody::Bearing => of_rings(&Side::BOTH, 2 * (bearing + 2 * n_balls)) + tied_bytes(model),
     };
     let meshes: usize = rings.iter().flatten().map(|ring| ring.mesh).sum();
     let search = wanted.bodies.iter().map(of_body).max().unwrap_or(0);

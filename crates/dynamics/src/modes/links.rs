@@ -7,6 +7,7 @@ use timer::SharedLaps;
 
 use super::columns::{LengthGrowth, LinkTangent};
 use crate::bearing::{BearingParts, FIRST_BALL, lengths};
+use crate::model::Model;
 use crate::solution::StaticSolution;
 use crate::system::{BodyId, FiniteMotion, Link, LinkTerm, N_FINITE};
 
@@ -20,7 +21,7 @@ pub struct RingCarrier {
     pub motion: SparseLoad,
 }
 
-/// Tangents of all interactions of the equilibrium and what they connect.
+/// Tangents of all interactions of the equilibrium and what they connect, contacts first, on patches that stay.
 pub fn link_tangents(vibrating: &VibratingLinks<'_>) -> Vec<LinkTangent> {
     let parts = vibrating.parts;
     let x = parts.unknowns(&vibrating.equilibrium.displacements);
@@ -47,6 +48,8 @@ pub fn link_tangents(vibrating: &VibratingLinks<'_>) -> Vec<LinkTangent> {
 
 /// What moves the coordinates of a bearing that vibrates.
 pub struct VibratingLinks<'v> {
+    /// The bearing.
+    pub model: &'v Model,
     /// The equilibrium about which it does.
     pub equilibrium: &'v StaticSolution,
     /// Its bodies and contacts, whose shaft may move in all that it is to move in.

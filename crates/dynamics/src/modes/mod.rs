@@ -1,9 +1,9 @@
 //! Natural frequencies and shapes: of one ring alone, or of the loaded bearing about its static equilibrium.
 //!
 //! Small free vibration, K x = omega^2 M x, without damping and without rotation: no gyroscopic splitting of modes,
-//! no cage, the contacts stay where they are and keep the tangent of their law. Unknowns of a bearing: the nodes of
-//! its flexible rings, the shaft's free dofs, and two dofs per ball, radial and axial. K holds the rings' stiffness
-//! and per contact, with l the vector from groove centre to ball centre,
+//! no cage. Contacts keep the tangent of their law, and their patches go along with them (`patches`). Unknowns of a
+//! bearing: the nodes of its flexible rings, the shaft's free dofs, and two dofs per ball, radial and axial. K holds
+//! the rings' stiffness and per contact, with l the vector from groove centre to ball centre,
 //!
 //! ```text
 //! k n n^T + Q/|l| (1 - n n^T),    k = dQ/dg,  n = l/|l|
@@ -32,6 +32,7 @@
 mod blocks;
 mod columns;
 mod links;
+mod patches;
 mod several;
 mod shape;
 mod small;
@@ -51,7 +52,8 @@ use crate::error::DynamicsError;
 use crate::model::{ContactMode, Model, ShaftDof};
 use crate::solution::StaticSolution;
 use columns::LinkTangent;
-use links::{RingCarrier, VibratingLinks, link_tangents};
+use links::{RingCarrier, VibratingLinks};
+use patches::links_with_patches;
 use shape::{BearingDofs, FoundPair, RingPlace};
 use small::SmallDofs;
 use system::VibratingSystem;
@@ -152,13 +154,14 @@ pub fn bearing_modes(
         }
         motion
     });
-    let link_tangents = link_tangents(&VibratingLinks {
+    let link_tangents = links_with_patches(&VibratingLinks {
+        model,
         equilibrium,
         parts: &equilibrium.parts,
         rings: dofs.in_groups(&groups),
         first_ball: dofs.first_ball,
         carriers: &carriers,
-    });
+    })?;
     let loose = hold_loose_balls(&mut small, std::slice::from_ref(&dofs), &link_tangents, shift);
     let block = block(model.geometry.n_balls);
     let system = VibratingSystem::new(groups, small, link_tangents, Vec::new(), shift)?;

@@ -16,7 +16,8 @@ use ring::sparse::SparseLoad;
 use timer::{Laps, Stopwatch};
 
 use super::columns::LengthGrowth;
-use super::links::{VibratingLinks, link_tangents};
+use super::links::VibratingLinks;
+use super::patches::links_with_patches;
 use super::shape::{BearingDofs, FoundPair, Kinetic, Mode, Shape, is_larger};
 use super::small::SmallDofs;
 use super::system::VibratingSystem;
@@ -109,13 +110,14 @@ pub fn modes_of_several(
         let mut case = released(model, None, equilibrium)?;
         // Loads along the shaft do not turn with it.
         case.parts.shaft.tilted = None;
-        links.extend(link_tangents(&VibratingLinks {
+        links.extend(links_with_patches(&VibratingLinks {
+            model,
             equilibrium,
             parts: &case.parts,
             rings: dofs.in_groups(&groups),
             first_ball: dofs.first_ball,
             carriers: &carriers,
-        }));
+        })?);
         if let Some((group, ring)) = dofs.in_groups(&groups)[0].filter(|(_, ring)| !ring.follows_body()) {
             joints.extend(dofs.shaft.iter().enumerate().filter_map(|(dof, motion)| {
                 Some(LengthGrowth {
