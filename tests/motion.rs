@@ -4,7 +4,7 @@ use std::sync::OnceLock;
 
 use crate::util::lockstep::{assert_same_run, small_motion};
 use crate::util::tables::{Table, summary};
-use crate::util::{Dir, Files, with_line};
+use crate::util::{Dir, Files, RIGID, with_line};
 
 /// Steps of the tests' scene: enough to show the layout and the ledger.
 const DYNAMIC: &str =
@@ -181,4 +181,40 @@ fn one_and_two_threads_write_the_same_histories() {
         let read = |folder: &str| std::fs::read(dir.path(&format!("{folder}/{name}"))).unwrap();
         assert!(read("one") == read("out"), "{name} differs");
     }
+}
+
+/// Wrong: nobody would say that a fast motion under a load across swings for its start, or it would be said of thrust,
+/// of slow balls, or of a start that has their velocities.
+#[test]
+fn a_start_that_swings_is_told() {
+    let dir = Dir::with_scene(&with_line("[static]", "[static]", DYNAMIC));
+    let told = |across: &str, speed: &str, start: &str| {
+        let across = format!("effects.radial_force.value={across}");
+        let sets = [
+            &across,
+            speed,
+            "effects.radial_force.direction=0 deg",
+            "shaft.mass=0.5 kg",
+            start,
+        ];
+        let sets = sets
+            .into_iter()
+            .filter(|set| !set.is_empty())
+            .flat_map(|set| ["--set", set]);
+        let arguments: Vec<&str> = ["check", "scene.toml"]
+            .into_iter()
+            .chain(RIGID)
+            .chain(sets)
+            .collect();
+        let outcome = dir.raceway(&arguments);
+        assert_eq!(outcome.code, Some(0), "{}", outcome.stderr);
+        let advice = "[dynamic.start.rolling] is off, but balls that start at rest in their planes make what is free \
+                      swing by about";
+        outcome.stdout.contains(advice)
+    };
+    let fast = "speed.inner=40000 rpm";
+    assert!(told("500 N", fast, ""));
+    assert!(!told("500 N", fast, "dynamic.start.rolling={}"));
+    assert!(!told("0 N", fast, ""));
+    assert!(!told("500 N", "speed.inner=1000 rpm", ""));
 }

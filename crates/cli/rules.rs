@@ -5,6 +5,7 @@
 //! ```text
 //! flexibility            u / d: hoop stretch of a ring that nothing holds, u = Z Q cos a r / (2 pi E A)
 //! body.seat.harmonics    more than the number of balls
+//! dynamic.start.rolling  omega_c sqrt(m / k): swing of balls that start at rest in their planes, over the displacement
 //! shaft.z                0 is the just-touching state; grooves opposite each other are at -A sin a, A their distance
 //!                        free without an axial load: an angular contact bearing comes apart, a from 14 deg on
 //! ```
@@ -13,9 +14,10 @@
 
 use contact::Side;
 use dynamics::Model;
-use dynamics::effects::rules::{Case, MATTERS, PeakLoad, share_of};
+use dynamics::effects::orbit_inertia::share_of_stiffness;
+use dynamics::effects::rules::{Case, MATTERS, PeakLoad, judge_key, share_of};
 use results::failure::Failure;
-use scene::{Analysis, Scene, Shaft, ShaftMotion, material, speeds};
+use scene::{Analysis, Scene, Shaft, ShaftMotion, Start, material, speeds};
 
 use crate::bodies::orders_of_seats;
 use crate::periodic_gain;
@@ -43,6 +45,7 @@ pub fn advice(scene: &Scene, model: &Model) -> Result<Vec<String>, Failure> {
     zero_of_the_shaft(scene, model, &mut lines);
     lines.extend(free_without_thrust(scene, &case));
     lines.extend(rigid_ring_without_inertia(scene, &case));
+    lines.extend(start_at_rest(scene, &case));
     lines.extend(mass_beside_load_point(scene));
     lines.extend(periodic_gain::advice(scene, model));
     lines.extend(orders_of_seats(scene, model));
@@ -151,6 +154,25 @@ fn rigid_ring_without_inertia(scene: &Scene, case: &Case<'_>) -> Option<String> 
          (shaft.polar_inertia)",
         0.5 * polar + mass * case.width * case.width / 12.0
     ))
+}
+
+/// Balls that start at rest in their planes are struck by the course on which they go round: they swing by its speed
+/// over their own frequency.
+fn start_at_rest(scene: &Scene, case: &Case<'_>) -> Vec<String> {
+    let Analysis::Dynamic(dynamic) = &scene.analysis else {
+        return Vec::new();
+    };
+    let is_struck =
+        dynamic.start == Start::Static && case.load.radial > 0.0 && case.model.traction().is_none();
+    if !is_struck {
+        return Vec::new();
+    }
+    let ratio = share_of_stiffness(case).sqrt();
+    let estimate = format!(
+        "balls that start at rest in their planes make what is free swing by about {}, omega_c sqrt(m / k)",
+        share_of(ratio, "its displacement")
+    );
+    judge_key("[dynamic.start.rolling]", false, ratio, &estimate)
 }
 
 fn flexibility(scene: &Scene, case: &Case<'_>) -> Vec<String> {

@@ -4,7 +4,7 @@
 //! pass with the speed W of the cage. So a ball has the acceleration W^2 d2x/dpsi2 beside that of its circle, m W^2 r,
 //! which is [`super::ball_centrifugal`]. Here its force -m W^2 d2x/dpsi2 acts on each ball of an equilibrium, with the
 //! derivative of [`course_slopes`]. A motion has this inertia of itself; the effect gives it the start at which it
-//! rests, with the velocities of `[dynamic.start.rolling]`.
+//! rests. `[dynamic.start.rolling]` brings it, beside the velocities of the balls.
 //!
 //! It needs the centrifugal force, which presses all balls on a raceway: the inertia of balls that hardly touch
 //! anything would move them without end.
@@ -48,9 +48,7 @@ impl table::EffectTable for OrbitInertiaTable {
         if case.load.radial == 0.0 || case.has_inertia {
             return Vec::new();
         }
-        let slope = case.centrifugal_force() / case.model.geometry.ball_centre().radial;
-        let stiffness = 0.75 * case.ball_load() / case.approach() * case.contact_angle().sin().powi(2);
-        let ratio = slope / stiffness;
+        let ratio = share_of_stiffness(case);
         let estimate = format!(
             "the inertia of balls that move along the axis as they go round, m omega_c^2, is {}",
             share_of(ratio, "the stiffness of a loaded ball there")
@@ -64,6 +62,13 @@ impl table::EffectTable for OrbitInertiaTable {
             slip: setting.slip,
         })))
     }
+}
+
+/// m W^2 over the stiffness of a loaded ball along the axis.
+pub fn share_of_stiffness(case: &Case<'_>) -> f64 {
+    let slope = case.centrifugal_force() / case.model.geometry.ball_centre().radial;
+    let stiffness = 0.75 * case.ball_load() / case.approach() * case.contact_angle().sin().powi(2);
+    slope / stiffness
 }
 
 /// Inertia of balls on their orbits.

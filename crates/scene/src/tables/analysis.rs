@@ -2,7 +2,8 @@
 
 use std::path::Path;
 
-use dynamics::effects::Context;
+use dynamics::effects::orbit_inertia::OrbitInertiaTable;
+use dynamics::effects::{Context, Effects};
 use input::{Clock, Problems};
 use toml_edit::DocumentMut;
 
@@ -18,7 +19,22 @@ use super::profiles::{ProfilesContext, SurfaceProfiles};
 use super::ring::{MeshFiles, Ring};
 use super::shaft::Shaft;
 use super::speed::{RawSpeed, SpeedUse, makes_force};
+use super::start::Start;
 use super::sweep::{Analysis, RawStatic};
+
+impl Analysis {
+    /// The effects with the inertia of balls on their orbits where a motion starts with balls that go round, beside
+    /// their centrifugal force and where they follow each other: the motion has it of itself.
+    pub(super) fn at_start(&self, effects: Effects, profiles: &SurfaceProfiles) -> Effects {
+        let is_rolling = matches!(self, Analysis::Dynamic(dynamic) if dynamic.start == Start::Rolling);
+        let may = effects.ball_centrifugal.is_some() && profiles.parts_courses(&effects).is_none();
+        let added = (is_rolling && may).then_some(OrbitInertiaTable {});
+        Effects {
+            orbit_inertia: effects.orbit_inertia.or(added),
+            ..effects
+        }
+    }
+}
 
 impl RawScene {
     pub(super) fn analysis(

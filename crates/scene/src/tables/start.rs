@@ -47,7 +47,8 @@ pub enum Start {
     /// Static equilibrium under the loads and the speed at t = 0.
     #[default]
     Static,
-    /// The same, with the velocities at which equilibria follow each other while the bearing rolls.
+    /// The same, with the velocities at which equilibria follow each other while the bearing rolls, and the inertia of
+    /// balls on their orbits.
     Rolling,
     /// Undeformed bodies; the shaft with the inner ring at this displacement and velocity, m, rad, m/s, rad/s; balls
     /// at their just-touching position, at rest.

@@ -96,7 +96,7 @@ impl Composer<'_> {
             scene,
         };
         let mut bearings: Vec<BearingOnShaft> = raw.bearing.iter().zip(scenes).map(mounted).collect();
-        note_shared_bodies(&mut bearings);
+        note_what_is_shared(&mut bearings, &raw);
         check_carried(&bearings, &shaft, &mut problems);
         if !problems.is_empty() {
             return Err(self.messages.invalid(problems.into_texts()));
@@ -284,8 +284,11 @@ impl Composer<'_> {
     }
 }
 
-/// Notes which bodies carry several bearings.
-fn note_shared_bodies(bearings: &mut [BearingOnShaft]) {
+/// Notes which bodies carry several bearings, and that an unbalance of the shaft turns the courses of their balls.
+fn note_what_is_shared(bearings: &mut [BearingOnShaft], raw: &RawSeveral) {
+    for bearing in bearings.iter_mut().filter(|_| raw.effects.unbalance.is_some()) {
+        bearing.scene.effects.orbit_inertia = None;
+    }
     let bodies = |bearing: &BearingOnShaft| bearing.scene.bodies.clone().into_iter().flatten();
     let names: Vec<String> = bearings.iter().flat_map(bodies).map(|body| body.name).collect();
     for body in bearings

@@ -104,6 +104,27 @@ fn a_motion_starts_rolling_where_something_turns() {
     assert!(message.contains(expected), "{message}");
 }
 
+/// If this failed, a motion that starts rolling would not start where it rests, balls that nothing presses would be
+/// carried away by their inertia, or balls on courses of their own would get that of one.
+#[test]
+fn a_motion_that_starts_rolling_has_the_inertia_of_orbits_where_it_may() {
+    let (turning, _) = DYNAMIC.split_once("[dynamic.start.given]").unwrap();
+    let rolling = format!("{turning}[dynamic.start.rolling]\n");
+    let has_inertia = |text: &str, overrides: &[&str]| {
+        let scene = parse(text, overrides).unwrap();
+        scene.effects.orbit_inertia.is_some()
+    };
+    assert!(has_inertia(&rolling, &[]));
+    assert!(!has_inertia(
+        &replace_line(&rolling, "[effects.ball_centrifugal]", ""),
+        &[]
+    ));
+    let unbalance = "effects.unbalance={ mass = \"10 g\", eccentricity = \"1 um\" }";
+    assert!(!has_inertia(&rolling, &[unbalance]));
+    let at_rest = parse(turning, &[]).unwrap();
+    assert!(at_rest.effects.orbit_inertia.is_none());
+}
+
 /// If this failed, the speeds of balls would follow other angles than asked for, or be asked for in vain.
 #[test]
 fn ball_speeds_are_for_effects_of_turning_balls() {

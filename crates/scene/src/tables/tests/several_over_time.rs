@@ -89,3 +89,19 @@ fn a_table_that_is_taken_out_is_in_no_bearing() {
     let standing = lists.several(&text, &["speed=none"]);
     assert!(standing.speed.is_none() && standing.bearings.iter().all(|b| b.scene.speed.is_none()));
 }
+
+/// If this failed, the balls of a list with an unbalance, whose courses turn with the shaft, would get the inertia of
+/// courses that stand.
+#[test]
+fn balls_of_a_list_that_starts_rolling_have_the_inertia_of_orbits_without_an_unbalance() {
+    let lists = Lists::new("rolling_start");
+    let effects = "[speed]\ninner = \"600 rpm\"\n[effects.ball_centrifugal]\n";
+    let text = moving(&list(BEAM, effects), "[dynamic.start.rolling]\n");
+    let have_inertia = |text: &str| {
+        let scene = lists.several(text, &[]);
+        let mut effects = scene.bearings.iter().map(|bearing| &bearing.scene.effects);
+        effects.all(|effects| effects.orbit_inertia.is_some())
+    };
+    assert!(have_inertia(&text));
+    assert!(!have_inertia(&format!("{text}{UNBALANCE}")));
+}
