@@ -36,6 +36,7 @@ mod patches;
 mod several;
 mod shape;
 mod small;
+mod symmetric;
 mod system;
 
 use std::collections::BTreeSet;

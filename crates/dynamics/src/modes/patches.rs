@@ -12,8 +12,7 @@
 //! the same l, and G from alpha(l) and Q(l, s). All are small matrices of one ball. With H = (1 + B G)^-1, where B has
 //! its sign, they add [a b] [D + F G; G] H a^T to the stiffness.
 //!
-//! That is not quite symmetric: a patch has no energy of its own. Modes have the symmetric half, which gives the first
-//! order of each frequency exactly: what is left out turns motions into each other that have frequencies of their own.
+//! That is not quite symmetric: a patch has no energy of its own. `symmetric` says what modes have in its place.
 //!
 //! Cost: two more columns for each contact.
 
@@ -135,7 +134,9 @@ impl<'v> MovingPatches<'v> {
             let growth = self.growth_of_load((ball, changing), Meridian::new(radial, axial));
             link.lengths.push(growth);
         }
-        link.tangent = symmetric(link.lengths.len(), &tangent);
+        let n = link.lengths.len();
+        let of_lengths = |i: usize, j: usize| if j < N_ROWS { tangent[N_ROWS * i + j] } else { 0.0 };
+        link.tangent = (0..n * n).map(|e| of_lengths(e / n, e % n)).collect();
         Ok(())
     }
 
@@ -275,13 +276,5 @@ fn quotient((low, high): (&[f64], &[f64]), step: f64) -> Vec<f64> {
     low.iter()
         .zip(high)
         .map(|(low, high)| (high - low) / step)
-        .collect()
-}
-
-/// The symmetric half of a matrix of `n` rows whose first columns are given, row-major, and whose others are zero.
-fn symmetric(n: usize, columns: &[f64]) -> Vec<f64> {
-    let entry = |i: usize, j: usize| if j < N_ROWS { columns[N_ROWS * i + j] } else { 0.0 };
-    (0..n * n)
-        .map(|e| 0.5 * (entry(e / n, e % n) + entry(e % n, e / n)))
         .collect()
 }

@@ -22,6 +22,7 @@ use rayon::prelude::*;
 use super::blocks::{Answer, of_each_group, together};
 use super::columns::{Column, LengthGrowth, LinkTangent, Role, columns};
 use super::small::{SmallDofs, SmallEntries};
+use super::symmetric::make_symmetric;
 use crate::error::DynamicsError;
 use ring::VibratingRings;
 use ring::sparse::{SparseLoad, sparse_dot};
@@ -71,10 +72,12 @@ impl VibratingSystem {
             .into_par_iter()
             .map(|i| system.answer(i))
             .collect();
+        let failed = |source| DynamicsError::Modes { source };
+        let answered = (&system.groups[..], &system.answers[..]);
+        make_symmetric(&mut system.link_tangents, &system.columns, answered).map_err(failed)?;
         let n = system.columns.len() + system.small.n();
         if n > 0 {
-            let dense = DenseLu::factor(n, &system.matrix());
-            system.dense = Some(dense.map_err(|source| DynamicsError::Modes { source })?);
+            system.dense = Some(DenseLu::factor(n, &system.matrix()).map_err(failed)?);
         }
         Ok(system)
     }
@@ -118,10 +121,8 @@ impl VibratingSystem {
 
     /// Takes the forces that tie rings to bodies out of a vector of forces.
     fn remove_ties(&self, force: &mut [f64]) {
-        let mut start = 0;
-        for group in &self.groups {
-            group.remove_reactions(&mut force[start..start + group.n()]);
-            start += group.n();
+        for (i, group) in self.groups.iter().enumerate() {
+            group.remove_reactions(&mut force[self.start(i)..][..group.n()]);
         }
     }
 
@@ -242,8 +243,7 @@ impl VibratingSystem {
         let mut unknowns = vec![0.0; n * n_vectors];
         for (vector, rhs) in unknowns.chunks_exact_mut(n).enumerate() {
             let field = |i: usize| &parts[i][self.groups[i].n() * vector..];
-            let motions = self.columns.iter().map(|column| column.growth.in_rings(field));
-            let motions: Vec<f64> = motions.collect();
+            let motions: Vec<f64> = self.columns.iter().map(|c| c.growth.in_rings(field)).collect();
             for j in 0..n_columns {
                 rhs[j] = self.law(j).1.iter().map(|&(k, share)| share * motions[k]).sum();
             }
