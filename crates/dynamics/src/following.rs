@@ -13,7 +13,7 @@ use crate::solution::StaticSolution;
 /// Step of a contact angle in a difference quotient of loads, rad: their relative error is its square.
 const ANGLE_STEP: f64 = 1e-5;
 /// Step of an unknown in a difference quotient of contact angles, over the distance of the centres.
-const LENGTH_STEP: f64 = 1e-5;
+pub(crate) const LENGTH_STEP: f64 = 1e-5;
 
 /// Adds the growth of loads that follow the contact angles: d residual/d angle, of each site, times d angle/dx.
 pub(crate) fn add_following_loads(

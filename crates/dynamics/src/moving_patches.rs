@@ -14,12 +14,12 @@
 //! Cost: the compliance of two patches for each contact, its own and one whose two directions are dw f over alpha and
 //! over Q.
 
-use contact::{Meridian, NodalWeights, Side};
+use contact::{NodalWeights, Side};
 use timer::SharedLaps;
 
 use crate::error::DynamicsError;
 use crate::following::{ContactGrowths, add_to_column};
-use crate::interactions::raceway_contact::{Site, SiteState};
+use crate::interactions::raceway_contact::{Site, SiteState, on_rings};
 use crate::loading::LoadCase;
 use crate::patches_beside::{KINDS, PatchesBeside, StandingContacts};
 use crate::solution::StaticSolution;
@@ -53,7 +53,6 @@ struct Moving<'a> {
     solution: &'a StaticSolution,
     x: &'a [f64],
     states: Vec<SiteState>,
-    forces: Vec<Meridian>,
 }
 
 /// Adds to a tangent at the unknowns `x` that the patches of flexible rings move and grow; what they do, by side.
@@ -69,7 +68,6 @@ pub(crate) fn add_moving_patches(
         solution,
         x,
         states: case.parts.states(x),
-        forces: case.parts.forces_at(&solution.displacements),
     };
     let mut found = [None, None];
     for side in Side::BOTH {
@@ -94,7 +92,6 @@ impl Moving<'_> {
             time: self.case.pose.now.time,
             contacts: &self.case.parts.contacts,
             states: &self.states,
-            forces: &self.forces,
         };
         let beside = PatchesBeside::new(&standing, side, &ring.raceway)?;
         let (n, n_balls) = (self.x.len(), self.case.model.geometry.n_balls);
@@ -130,7 +127,7 @@ impl Moving<'_> {
 
     /// Growth of the load of each contact on its ring with angle and size of the patch.
     fn growths_of_loads(&self, side: Side, beside: &PatchesBeside) -> Vec<NodalWeights> {
-        let forces = self.case.ring_forces(&self.forces);
+        let forces = self.case.ring_forces(&on_rings(&self.states));
         let of_ball = |ball: usize| match beside.is_loaded(ball) {
             true => beside.growth_of_load(ball, forces[2 * ball + side.index()]),
             false => self.solution.footprints(side)[ball].weights.clone(),

@@ -6,7 +6,7 @@ use contact::{Meridian, NodalWeights, Side};
 
 use crate::error::DynamicsError;
 use crate::footprint::place;
-use crate::interactions::raceway_contact::{RacewayContacts, Site, SiteState};
+use crate::interactions::raceway_contact::{RacewayContacts, Site, SiteState, on_rings};
 use crate::model::Model;
 use crate::raceway::Raceway;
 
@@ -24,8 +24,6 @@ pub(crate) struct StandingContacts<'a> {
     pub time: f64,
     pub contacts: &'a RacewayContacts,
     pub states: &'a [SiteState],
-    /// Force on the ring of every site, N, without loads beside those of contacts.
-    pub forces: &'a [Meridian],
 }
 
 /// One place of all patches of a ring.
@@ -49,8 +47,10 @@ impl PatchesBeside {
         side: Side,
         raceway: &Raceway,
     ) -> Result<PatchesBeside, DynamicsError> {
-        let at = |angle: f64, size: f64| standing.beside((side, raceway), angle, size);
-        let own = standing.forces.iter().skip(side.index()).step_by(2);
+        // Without loads beside those of contacts.
+        let forces = on_rings(standing.states);
+        let at = |angle: f64, size: f64| standing.beside((side, raceway), angle, (&forces, size));
+        let own = forces.iter().skip(side.index()).step_by(2);
         Ok(PatchesBeside {
             side,
             kinds: [
@@ -124,12 +124,12 @@ impl StandingContacts<'_> {
         &self,
         (side, raceway): (Side, &Raceway),
         angle: f64,
-        size: f64,
+        (forces, size): (&[Meridian], f64),
     ) -> Result<Beside, DynamicsError> {
         let mounting = self.model.mounting.at(self.time);
         let mut states = self.states.to_vec();
         states.iter_mut().for_each(|state| state.angle += angle);
-        let forces: Vec<Meridian> = self.forces.iter().map(|f| f.map(|x| size * x)).collect();
+        let forces: Vec<Meridian> = forces.iter().map(|f| f.map(|x| size * x)).collect();
         let mut contacts = self.contacts.clone();
         let feet = place(
             self.model,

@@ -461,7 +461,8 @@ fn patches_go_along_as_in_the_stiffness() {
         println!(
             "{hold:?}: {found:?}, {moving:?}, {stays:?}: {error:.1e} off, {before:.1e} of patches that stay"
         );
-        assert!(error < 2e-1 && before > 1e-4, "{error} {before}");
+        // Rings and balls swing along: their mass is 3e-5 of the shaft's.
+        assert!(error < 1e-5 && before > 50.0 * error, "{error} {before}");
     }
 }
 

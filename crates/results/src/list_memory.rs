@@ -9,7 +9,7 @@
 use std::sync::Arc;
 
 use comm::Communicator;
-use dynamics::modes::basis_sizes;
+use dynamics::modes::{COLUMNS_PER_BALL, basis_sizes};
 use dynamics::{Model, MotionMemory, RingMemory, RingModel, forecast_motion_peak, forecast_peak};
 use scene::{Analysis, Modes, Scene};
 
@@ -162,9 +162,6 @@ fn steps_of(analysis: &Analysis, bearings: &[BearingMemory<'_>]) -> Option<usize
     }
     Some(program + kept.max(making))
 }
-
-/// Vectors of a ring per ball on it: two directions of the contact, and two in which its patch changes.
-const COLUMNS_PER_BALL: usize = 4;
 
 /// Forecast of the largest resident memory of the natural modes of a list, bytes: each ring has factor, stiffness and
 /// mass of its own, and the search keeps vectors over all of them. Good to a tenth: 1338 MB for 1213 MB, two bearings

@@ -7,7 +7,7 @@ use anyhow::anyhow;
 use body::{BodyModes, SeatTie};
 use comm::Communicator;
 use contact::Side;
-use dynamics::modes::basis_sizes;
+use dynamics::modes::{COLUMNS_PER_BALL, basis_sizes};
 use dynamics::motion::Motion;
 use dynamics::points::{most_ahead, points_per_start, threads_of_points};
 use dynamics::statics::settings;
@@ -178,7 +178,9 @@ fn forecast_modes(wanted: &Modes, (scene, model): (&Scene, &Model), rings: [Opti
     let of_body = |body: &ModeBody| match body {
         ModeBody::Inner => of_rings(&Side::BOTH[..1], 2 * alone),
         ModeBody::Outer => of_rings(&Side::BOTH[1..], 2 * alone),
-        ModeBody::Bearing => of_rings(&Side::BOTH, 2 * (bearing + 2 * n_balls)) + tied_bytes(model),
+        ModeBody::Bearing => {
+            of_rings(&Side::BOTH, 2 * bearing + COLUMNS_PER_BALL * n_balls) + tied_bytes(model)
+        }
     };
     let meshes: usize = rings.iter().flatten().map(|ring| ring.mesh).sum();
     let search = wanted.bodies.iter().map(of_body).max().unwrap_or(0);

@@ -294,7 +294,7 @@ pub struct GrooveBodies {
 }
 
 /// Lengths of a ball's contacts: l of the inner one, then of the outer one.
-const N_ROWS: usize = 4;
+pub const N_ROWS: usize = 4;
 
 /// Tangent over all lengths of a ball, row-major, from that of each contact and of each force over the other's length.
 fn tangent_of_ball(own: BySide<ContactTangent>, across: BySide<ContactTangent>) -> [f64; N_ROWS * N_ROWS] {

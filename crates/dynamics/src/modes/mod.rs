@@ -292,6 +292,9 @@ fn hold_loose_balls(
     n
 }
 
+/// Vectors of a ring per ball on it: two directions of the contact, and two in which its patch changes.
+pub const COLUMNS_PER_BALL: usize = 4;
+
 /// Largest number of basis vectors that a search keeps, for forecasts of memory: ring alone, bearing.
 pub fn basis_sizes(number: usize, n_balls: usize) -> [usize; 2] {
     [RING_BLOCK, block(n_balls)].map(|block| LanczosSettings::new(number, block).capacity())

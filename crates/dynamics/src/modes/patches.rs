@@ -9,8 +9,8 @@
 //! ```
 //!
 //! with the tangent D of the contacts of a ball on patches that stay, the growth F of their forces with the patches at
-//! the same l, and G from alpha(l) and Q(l, s). All are small matrices of one ball. With H = (1 + B G)^-1, where B has
-//! its sign, they add [a b] [D + F G; G] H a^T to the stiffness.
+//! the same l, and G from alpha(l) and Q(l, s). All are small matrices of one ball. With H = (1 - B G)^-1 they add
+//! [a b] [D + F G; G] H a^T to the stiffness.
 //!
 //! That is not quite symmetric: a patch has no energy of its own. `symmetric` says what modes have in its place.
 //!
@@ -18,23 +18,15 @@
 
 use contact::{Meridian, Side};
 use dense::{DenseError, DenseLu};
-use timer::SharedLaps;
 
 use super::columns::{LengthGrowth, LinkTangent};
 use super::links::{VibratingLinks, link_tangents};
-use crate::bearing::{CONTACTS, lengths};
 use crate::error::DynamicsError;
-use crate::interactions::raceway_contact::{RacewayContacts, Site, SiteState, on_rings};
+use crate::following::LENGTH_STEP;
+use crate::interactions::raceway_contact::{N_ROWS, RacewayContacts, Site, SiteState, on_rings};
 use crate::model::ContactMode;
 use crate::patches_beside::{KINDS, PatchesBeside, StandingContacts};
 use crate::raceway::Raceway;
-use crate::system::Interaction;
-
-/// Step of a length in a difference quotient, over the distance of the groove centres.
-const LENGTH_STEP: f64 = 1e-5;
-
-/// Lengths of a ball's contacts: l of the inner one, then of the outer one.
-const N_ROWS: usize = 4;
 
 /// Tangents of all interactions of the equilibrium and what they connect, on patches that go along.
 pub fn links_with_patches(vibrating: &VibratingLinks<'_>) -> Result<Vec<LinkTangent>, DynamicsError> {
@@ -43,13 +35,10 @@ pub fn links_with_patches(vibrating: &VibratingLinks<'_>) -> Result<Vec<LinkTang
     if parts.free.is_some() || vibrating.rings.iter().all(Option::is_none) {
         return Ok(links);
     }
-    let x = parts.unknowns(&vibrating.equilibrium.displacements);
-    let found = parts.system().lengths_at(CONTACTS, &x);
-    let at = parts.contacts.evaluate(lengths(&found), &SharedLaps::default());
-    let patches = MovingPatches::new(vibrating)?;
-    let places = found[1].chunks_exact(N_ROWS).zip(at.forces.chunks_exact(N_ROWS));
-    for (ball, (place, link)) in places.zip(&mut links).enumerate() {
-        patches.add(ball, place, link)?;
+    let [_, reaches] = parts.reaches(&parts.unknowns(&vibrating.equilibrium.displacements));
+    let patches = MovingPatches::new(vibrating, &parts.contacts.states(&reaches))?;
+    for (ball, (lengths, link)) in reaches.chunks_exact(N_ROWS).zip(&mut links).enumerate() {
+        patches.add(ball, lengths, link)?;
     }
     Ok(links)
 }
@@ -58,6 +47,8 @@ pub fn links_with_patches(vibrating: &VibratingLinks<'_>) -> Result<Vec<LinkTang
 struct MovingPatches<'v> {
     vibrating: &'v VibratingLinks<'v>,
     rings: [Option<PatchesBeside>; 2],
+    /// Force on the ring of every contact, N, with what loads it besides.
+    forces: Vec<Meridian>,
     /// Step of a length, m.
     step: f64,
 }
@@ -81,16 +72,16 @@ struct OfBall<'b> {
 
 impl<'v> MovingPatches<'v> {
     /// Of a bearing whose contacts have patches.
-    fn new(vibrating: &'v VibratingLinks<'v>) -> Result<MovingPatches<'v>, DynamicsError> {
+    fn new(
+        vibrating: &'v VibratingLinks<'v>,
+        states: &[SiteState],
+    ) -> Result<MovingPatches<'v>, DynamicsError> {
         let (model, parts) = (vibrating.model, vibrating.parts);
-        let u = &vibrating.equilibrium.displacements;
-        let (states, forces) = (parts.states_at(u), parts.forces_at(u));
         let standing = StandingContacts {
             model,
             time: vibrating.equilibrium.pose.now.time,
             contacts: &parts.contacts,
-            states: &states,
-            forces: &forces,
+            states,
         };
         let mut rings = [None, None];
         for side in Side::BOTH {
@@ -99,20 +90,19 @@ impl<'v> MovingPatches<'v> {
                 rings[side.index()] = Some(PatchesBeside::new(&standing, side, &raceway)?);
             }
         }
+        let mut forces = on_rings(states);
+        let sums = forces.iter_mut().zip(&parts.contacts.dead);
+        sums.for_each(|(sum, dead)| *sum = *sum + *dead);
         Ok(MovingPatches {
             vibrating,
             rings,
+            forces,
             step: LENGTH_STEP * model.geometry.groove_distance(),
         })
     }
 
-    /// Adds what they do to the link of a ball whose contacts have these lengths, m, and forces, N.
-    fn add(
-        &self,
-        ball: usize,
-        (lengths, forces): (&[f64], &[f64]),
-        link: &mut LinkTangent,
-    ) -> Result<(), DynamicsError> {
+    /// Adds what they do to the link of a ball whose contacts have these lengths, m.
+    fn add(&self, ball: usize, lengths: &[f64], link: &mut LinkTangent) -> Result<(), DynamicsError> {
         let changing = self.changing(ball);
         if changing.is_empty() {
             return Ok(());
@@ -130,9 +120,7 @@ impl<'v> MovingPatches<'v> {
             .tangent(&link.tangent, &motions, self.step)
             .map_err(|source| DynamicsError::ContactSystem { source })?;
         for changing in &changing {
-            let [radial, axial] = [0, 1].map(|i| forces[2 * changing.side.index() + i]);
-            let growth = self.growth_of_load((ball, changing), Meridian::new(radial, axial));
-            link.lengths.push(growth);
+            link.lengths.push(self.growth_of_load(ball, changing));
         }
         let n = link.lengths.len();
         let of_lengths = |i: usize, j: usize| if j < N_ROWS { tangent[N_ROWS * i + j] } else { 0.0 };
@@ -171,8 +159,9 @@ impl<'v> MovingPatches<'v> {
     }
 
     /// What a patch that moves adds to the loads on its ring, as a length.
-    fn growth_of_load(&self, (ball, changing): (usize, &Changing<'_>), force: Meridian) -> LengthGrowth {
+    fn growth_of_load(&self, ball: usize, changing: &Changing<'_>) -> LengthGrowth {
         let mut growth = LengthGrowth::default();
+        let force = self.forces[2 * ball + changing.side.index()];
         if let Some((group, ring)) = self.vibrating.rings[changing.side.index()] {
             let loads = ring.contact_loads(&changing.patches.growth_of_load(ball, force));
             growth.add_ring(group, &loads[changing.kind], -1.0 / changing.unit);
