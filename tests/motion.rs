@@ -217,4 +217,7 @@ fn a_start_that_swings_is_told() {
     assert!(!told("500 N", fast, "dynamic.start.rolling={}"));
     assert!(!told("0 N", fast, ""));
     assert!(!told("500 N", "speed.inner=1000 rpm", ""));
+    // Grooves without play: balls that no contact angle holds along the axis are held by their load.
+    let play = "bearing.outer_raceway_diameter=74.01 mm";
+    assert!(!told("500 N", "speed.inner=1000 rpm", play));
 }

@@ -13,7 +13,8 @@
 //! turn with a ring are refused. In quasi-static runs the course is that of each instant: what its change adds is left
 //! out, as all inertia of a change is there.
 //!
-//! Rule of thumb: m W^2 over the stiffness of a loaded ball along the axis, 3/4 Q sin^2(a) / d.
+//! Rule of thumb: m W^2 over the stiffness of a loaded ball along the axis, 3/4 Q sin^2(a) / d of its contacts and
+//! Q cos^2(a) / A of its load across them, A the distance of the groove centres.
 
 use contact::Meridian;
 use serde::Deserialize;
@@ -67,8 +68,10 @@ impl table::EffectTable for OrbitInertiaTable {
 /// m W^2 over the stiffness of a loaded ball along the axis.
 pub fn share_of_stiffness(case: &Case<'_>) -> f64 {
     let slope = case.centrifugal_force() / case.model.geometry.ball_centre().radial;
-    let stiffness = 0.75 * case.ball_load() / case.approach() * case.contact_angle().sin().powi(2);
-    slope / stiffness
+    let (sin, cos) = case.contact_angle().sin_cos();
+    // Without a contact angle the load alone holds a ball along the axis.
+    let across = cos * cos / case.model.geometry.groove_distance();
+    slope / (case.ball_load() * (0.75 * sin * sin / case.approach() + across))
 }
 
 /// Inertia of balls on their orbits.
