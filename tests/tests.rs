@@ -66,6 +66,7 @@ mod several_modes;
 mod several_preload;
 mod several_quasi_static;
 mod several_ripple;
+mod several_rules;
 mod several_sweep;
 mod shared_housing;
 mod signals;

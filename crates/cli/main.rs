@@ -50,6 +50,7 @@ mod several_ready;
 mod several_rest;
 mod several_resume;
 mod several_ripple;
+mod several_rules;
 mod several_state;
 mod several_stiffness;
 mod shared;

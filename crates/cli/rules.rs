@@ -15,7 +15,8 @@
 use contact::Side;
 use dynamics::Model;
 use dynamics::effects::orbit_inertia::share_of_stiffness;
-use dynamics::effects::rules::{Case, MATTERS, PeakLoad, judge_key, share_of};
+use dynamics::effects::rules::{Case, MATTERS, PeakLoad, Remark, judge_key, share_of};
+use dynamics::kinematics::RingSpeeds;
 use results::failure::Failure;
 use scene::{Analysis, Scene, Shaft, ShaftMotion, Start, material, speeds};
 
@@ -24,12 +25,52 @@ use crate::periodic_gain;
 
 /// What the rules of thumb say about the effects of a scene: a sentence each, with estimate and formula.
 pub fn advice(scene: &Scene, model: &Model) -> Result<Vec<String>, Failure> {
-    let effects = &scene.effects;
     let speeds = &speeds(scene);
     let [inner, _] = speeds.at_largest(|[inner, _]| inner.abs());
+    let load = on_balls(&scene.shaft, scene.effects.peak_load(inner));
+    let case = case_of(scene, model, (speeds, load))?;
+    let mut lines: Vec<String> = of_case(scene, &case)
+        .into_iter()
+        .map(|remark| remark.text)
+        .collect();
+    zero_of_the_shaft(scene, model, &mut lines);
+    lines.extend(free_without_thrust(scene, &case));
+    lines.extend(rigid_ring_without_inertia(scene, &case));
+    lines.extend(mass_beside_load_point(scene));
+    lines.extend(of_meshes(scene, model));
+    Ok(lines)
+}
+
+/// What they say of one of several bearings on a shaft, which carries a part of the loads on it. What acts on the
+/// shaft is not judged: other bearings carry it too.
+pub fn remarks_on_shaft(
+    bearing: &Scene,
+    model: &Model,
+    load: PeakLoad,
+    changes_in_time: bool,
+) -> Result<Vec<Remark>, Failure> {
+    let speeds = &speeds(bearing);
+    let case = case_of(bearing, model, (speeds, load))?;
     let case = Case {
+        changes_in_time: changes_in_time || case.changes_in_time,
+        has_own_shaft: false,
+        ..case
+    };
+    let mut remarks = of_case(bearing, &case);
+    remarks.extend(of_meshes(bearing, model).into_iter().map(Remark::from));
+    Ok(remarks)
+}
+
+/// What a scene is judged by, at its largest speeds and loads.
+fn case_of<'a>(
+    scene: &Scene,
+    model: &'a Model,
+    (speeds, load): (&'a RingSpeeds, PeakLoad),
+) -> Result<Case<'a>, Failure> {
+    let effects = &scene.effects;
+    Ok(Case {
         model,
-        load: on_balls(&scene.shaft, effects.peak_load(inner)),
+        load,
         speeds,
         slip: effects.slip(),
         ring_steel: material(&scene.materials.rings)?,
@@ -39,17 +80,22 @@ pub fn advice(scene: &Scene, model: &Model) -> Result<Vec<String>, Failure> {
         has_inertia: matches!(scene.analysis, Analysis::Dynamic(_)),
         is_damped: effects.contact_damping().is_some() || effects.ring_damping().is_some(),
         changes_in_time: effects.are_scheduled() || speeds.changes(),
-    };
-    let mut lines = effects.advice(&case);
-    lines.extend(flexibility(scene, &case));
-    zero_of_the_shaft(scene, model, &mut lines);
-    lines.extend(free_without_thrust(scene, &case));
-    lines.extend(rigid_ring_without_inertia(scene, &case));
-    lines.extend(start_at_rest(scene, &case));
-    lines.extend(mass_beside_load_point(scene));
-    lines.extend(periodic_gain::advice(scene, model));
+        has_own_shaft: true,
+    })
+}
+
+/// Of effects, of rings that are taken as rigid, and of the start.
+fn of_case(scene: &Scene, case: &Case<'_>) -> Vec<Remark> {
+    let mut lines = scene.effects.advice(case);
+    lines.extend(flexibility(scene, case).into_iter().map(Remark::from));
+    lines.extend(start_at_rest(scene, case));
+    lines
+}
+
+fn of_meshes(scene: &Scene, model: &Model) -> Vec<String> {
+    let mut lines = periodic_gain::advice(scene, model);
     lines.extend(orders_of_seats(scene, model));
-    Ok(lines)
+    lines
 }
 
 /// The part of loads on the shaft that balls carry: none of those along axes in which the shaft is held.
@@ -158,7 +204,7 @@ fn rigid_ring_without_inertia(scene: &Scene, case: &Case<'_>) -> Option<String> 
 
 /// Balls that start at rest in their planes are struck by the course on which they go round: they swing by its speed
 /// over their own frequency.
-fn start_at_rest(scene: &Scene, case: &Case<'_>) -> Vec<String> {
+fn start_at_rest(scene: &Scene, case: &Case<'_>) -> Vec<Remark> {
     let Analysis::Dynamic(dynamic) = &scene.analysis else {
         return Vec::new();
     };

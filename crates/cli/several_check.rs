@@ -9,10 +9,11 @@ use results::failure::Failure;
 use results::list_memory::{BearingMemory, forecast_list, forecast_modes_of_list};
 use scene::{Analysis, BearingOnShaft, SeveralScene, ShaftKind, build_assembly, have_same_rings};
 
-use crate::bodies::{orders_of_seats, print_bodies};
+use crate::bodies::print_bodies;
 use crate::ring_sizes::print_rings;
 use crate::several_read::{all_doubts, surveys};
 use crate::several_ready::forecast;
+use crate::several_rules;
 use crate::shared::print_effects;
 
 /// Prints what a run would be.
@@ -66,7 +67,7 @@ pub fn check(scene: &SeveralScene) -> Result<(), Failure> {
         rayon::current_num_threads()
     ));
     say_output(scene, &assembly);
-    print_advice(scene, &assembly);
+    print_advice(scene, &assembly)?;
     answer::add("peak_memory_bytes", peak);
     answer::add("shaft_dofs", assembly.shaft.n());
     Ok(())
@@ -95,29 +96,28 @@ fn say_output(scene: &SeveralScene, assembly: &Assembly) {
     }
 }
 
-fn print_advice(scene: &SeveralScene, assembly: &Assembly) {
+fn print_advice(scene: &SeveralScene, assembly: &Assembly) -> Result<(), Failure> {
     let assumed = assumed(scene);
     for line in &assumed {
         print::line(format_args!("assumed  {line}"));
     }
-    let advice = [all_doubts(scene, assembly), orders_of_all(scene, assembly)].concat();
+    let advice = [
+        all_doubts(scene, assembly),
+        several_rules::advice(scene, assembly)?,
+    ]
+    .concat();
     for line in &advice {
         print::line(format_args!("advice   {line}"));
     }
     answer::add("advice", &advice);
     answer::add("assumed", &assumed);
+    Ok(())
 }
 
 /// Numbers that names stand for, once each.
 fn assumed(scene: &SeveralScene) -> Vec<String> {
     let of_bearings = scene.bearings.iter().flat_map(|bearing| &bearing.scene.assumed);
     once(of_bearings.chain(&scene.shaft.assumed).cloned())
-}
-
-/// What to do about seats that do not follow their balls, once for each body.
-fn orders_of_all(scene: &SeveralScene, assembly: &Assembly) -> Vec<String> {
-    let bearings = scene.bearings.iter().zip(&assembly.bearings);
-    once(bearings.flat_map(|(bearing, mounted)| orders_of_seats(&bearing.scene, &mounted.model)))
 }
 
 fn once(lines: impl Iterator<Item = String>) -> Vec<String> {

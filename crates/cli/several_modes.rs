@@ -24,6 +24,7 @@ use crate::several::{make_folder, placed, say_types, solving, warnings_at, words
 use crate::several_files::say_where_bodies_are;
 use crate::several_read::{ReadList, read_list, require_memory_of_all};
 use crate::several_ready::require_space;
+use crate::several_rules;
 
 /// What vibrates, in words.
 const NAME: &str = "bearings on their shaft";
@@ -76,6 +77,7 @@ pub fn run(
         iterations: solution.shaft.iterations,
         residual: solution.shaft.error,
         warnings,
+        advice: several_rules::advice(scene, &assembly)?,
         laps,
     };
     let shown = ListState::of_equilibrium(&assembly, &solution);

@@ -36,6 +36,7 @@ use crate::several_instant::rolling_start;
 use crate::several_ledger::LedgerWatch;
 use crate::several_read::{ReadList, read_list, require_memory_of_all};
 use crate::several_ready::{ready, require_space, say_left_out};
+use crate::several_rules;
 use crate::several_state;
 
 /// Runs the motion from its equilibrium.
@@ -250,6 +251,7 @@ impl ListMarch<'_> {
             iterations: self.newton as usize,
             residual: self.ledgers.worst,
             warnings,
+            advice: several_rules::advice(self.scene, self.assembly)?,
             laps: self.laps,
         };
         let summary = SeveralSummary::new(self.scene, self.assembly, &last, findings);

@@ -23,6 +23,7 @@ use timer::Laps;
 use crate::instants;
 use crate::several_files::close_bearing;
 use crate::several_quasi_state::ListCounts;
+use crate::several_rules;
 
 /// What has been found and written of a run.
 pub struct FoundList {
@@ -146,6 +147,7 @@ impl EndedList {
             iterations: found.counts.iterations as usize,
             residual: found.last.shaft.error,
             warnings,
+            advice: several_rules::advice(scene, &found.assembly)?,
             laps,
         };
         let summary = SeveralSummary::new(scene, &found.assembly, &last, findings);

@@ -7,6 +7,8 @@ use results::list_memory::require_memory_of_list;
 use results::survey::{Survey, say_doubts};
 use scene::{Scene, SeveralScene, build_assembly, doubts};
 
+use crate::several_rules;
+
 /// A list that has been read.
 pub struct ReadList {
     /// The bearings on their shaft.
@@ -28,6 +30,7 @@ pub fn read_list(
     let doubts = all_doubts(scene, &assembly);
     say_doubts(&doubts);
     test(&assembly)?;
+    several_rules::say(scene, &assembly)?;
     let surveys = surveys(scene, &assembly)?;
     Ok(ReadList {
         assembly,

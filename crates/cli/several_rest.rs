@@ -32,6 +32,7 @@ use crate::several::{
 use crate::several_files::close_bearing;
 use crate::several_read::{ReadList, read_list, require_memory_of_all};
 use crate::several_ready::forecast;
+use crate::several_rules;
 
 /// Runs a scene at rest, or a part of its sweep; its results go into a folder.
 pub fn run(
@@ -195,6 +196,7 @@ impl SolvedLists {
             iterations: self.iterations,
             residual: last.shaft.error,
             warnings: self.warnings,
+            advice: several_rules::advice(scene, &self.assembly)?,
             laps,
         };
         let shown = ListState::of_equilibrium(&self.assembly, &last);

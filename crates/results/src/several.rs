@@ -355,6 +355,7 @@ pub struct SeveralSummary {
     #[serde(skip_serializing_if = "Option::is_none")]
     modes: Option<FrequenciesSummary>,
     warnings: Vec<String>,
+    advice: Vec<String>,
     timing_s: BTreeMap<String, f64>,
     peak_memory_bytes: u64,
 }
@@ -395,6 +396,8 @@ pub struct SeveralFindings {
     pub residual: f64,
     /// What a user should know.
     pub warnings: Vec<String>,
+    /// What rules of thumb say about effects.
+    pub advice: Vec<String>,
     /// Wall time.
     pub laps: Laps,
 }
@@ -436,10 +439,8 @@ impl SeveralSummary {
             (mounted.name.clone(), summary)
         };
         let line = last.line(assembly);
-        let parts = findings
-            .laps
-            .iter()
-            .map(|lap| (lap.name.to_string(), lap.seconds));
+        let laps = findings.laps.iter();
+        let parts = laps.map(|lap| (lap.name.to_string(), lap.seconds));
         SeveralSummary {
             schema: SUMMARY_SCHEMA,
             scene: scene.path.display().to_string(),
@@ -466,6 +467,7 @@ impl SeveralSummary {
             residual: findings.residual,
             modes: None,
             warnings: findings.warnings,
+            advice: findings.advice,
             timing_s: parts.collect(),
             peak_memory_bytes: peak_memory(),
         }

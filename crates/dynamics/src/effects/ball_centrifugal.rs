@@ -9,7 +9,7 @@
 use serde::Deserialize;
 
 use super::loads::{Loads, Now};
-use super::rules::{Case, judge, newtons, share_of};
+use super::rules::{Case, Remark, judge, newtons, share_of};
 use super::table::{self, About, Setting, SpeedRole, Trial};
 use crate::balls::BallResult;
 use crate::error::DynamicsError;
@@ -38,7 +38,7 @@ impl table::EffectTable for BallCentrifugalTable {
         }
     }
 
-    fn advice(table: Option<&Self>, case: &Case<'_>) -> Vec<String> {
+    fn advice(table: Option<&Self>, case: &Case<'_>) -> Vec<Remark> {
         let load = case.ball_load();
         if load == 0.0 {
             return Vec::new();

@@ -10,7 +10,7 @@ use input::{DENSITY, Problems, Quantity};
 use serde::Deserialize;
 
 use super::loads::{Loads, Now};
-use super::rules::{Case, judge, newtons, share_of};
+use super::rules::{Case, Remark, judge, newtons, share_of};
 use super::table::{self, About, Context, Setting, SpeedRole};
 use crate::error::DynamicsError;
 use crate::kinematics::BothRings;
@@ -46,7 +46,7 @@ impl table::EffectTable for BallDragTable {
         }
     }
 
-    fn advice(table: Option<&Self>, case: &Case<'_>) -> Vec<String> {
+    fn advice(table: Option<&Self>, case: &Case<'_>) -> Vec<Remark> {
         let (Some(table), load) = (table, case.ball_load()) else {
             return Vec::new();
         };

@@ -9,7 +9,7 @@
 use input::Problems;
 use serde::Deserialize;
 
-use super::rules::Case;
+use super::rules::{Case, Remark};
 use super::table::{self, About, Context, SpeedRole, Trial};
 use crate::kinematics::SlipRatios;
 
@@ -43,17 +43,18 @@ impl table::EffectTable for CageSlipTable {
         }
     }
 
-    fn advice(table: Option<&Self>, case: &Case<'_>) -> Vec<String> {
+    fn advice(table: Option<&Self>, case: &Case<'_>) -> Vec<Remark> {
         let (force, axial) = (case.centrifugal_force(), case.load.axial / case.n_balls());
         let is_rolling = axial > HIRANO * force;
         if case.ball_load() == 0.0 || case.speeds.is_zero() || is_rolling || table.is_some() {
             return Vec::new();
         }
-        vec![format!(
+        let text = format!(
             "[effects.cage_slip] is off, but balls may skid: F_a / (Z F_c) = {:.1}, and pure rolling needs more than \
              {HIRANO:.0} (Hirano)",
             axial / force
-        )]
+        );
+        vec![text.into()]
     }
 
     fn check(&self, _context: Context, problems: &mut Problems) {

@@ -8,7 +8,7 @@
 use input::{DAMPING, LENGTH, Problems, Quantity};
 use serde::Deserialize;
 
-use super::rules::Case;
+use super::rules::{Case, Remark};
 use super::table::{self, About, Context, Need, SpeedRole, Trial};
 use crate::interactions::contact_damping::ContactDamping;
 
@@ -42,15 +42,13 @@ impl table::EffectTable for ContactDampingTable {
         }
     }
 
-    fn advice(_table: Option<&Self>, case: &Case<'_>) -> Vec<String> {
+    fn advice(_table: Option<&Self>, case: &Case<'_>) -> Vec<Remark> {
         if !case.has_inertia || case.is_damped || !case.changes_in_time {
             return Vec::new();
         }
-        vec![
-            "[effects.contact_damping] and [effects.rayleigh_damping] are off, but loads or speed change in time: \
-             what they set ringing never dies away"
-                .to_string(),
-        ]
+        let text = "[effects.contact_damping] and [effects.rayleigh_damping] are off, but loads or speed change in \
+                    time: what they set ringing never dies away";
+        vec![text.to_string().into()]
     }
 
     fn check(&self, _context: Context, problems: &mut Problems) {

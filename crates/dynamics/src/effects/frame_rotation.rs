@@ -31,7 +31,7 @@ use input::Problems;
 use serde::Deserialize;
 
 use super::loads::{FrameTurn, Loads, Now};
-use super::rules::{Case, judge, judge_key, share_of};
+use super::rules::{Case, Remark, judge, judge_key, share_of};
 use super::table::{self, About, Context, Need, Setting, SpeedRole, Trial};
 use crate::error::DynamicsError;
 use crate::kinematics::RingSpeeds;
@@ -79,7 +79,7 @@ impl table::EffectTable for FrameRotationTable {
         }
     }
 
-    fn advice(table: Option<&Self>, case: &Case<'_>) -> Vec<String> {
+    fn advice(table: Option<&Self>, case: &Case<'_>) -> Vec<Remark> {
         if case.ball_load() == 0.0 {
             return Vec::new();
         }
@@ -131,7 +131,7 @@ impl table::EffectTable for FrameRotationTable {
 }
 
 /// What the rule of thumb says of the stiffness by the stress of turning rings.
-fn stiffening_advice(table: Option<&FrameRotationTable>, case: &Case<'_>) -> Vec<String> {
+fn stiffening_advice(table: Option<&FrameRotationTable>, case: &Case<'_>) -> Vec<Remark> {
     let is_on = table.is_some_and(|table| table.stress_stiffening);
     if !case.has_inertia {
         return Vec::new();

@@ -19,7 +19,7 @@ use input::{ACCELERATION, Problems, Quantity, RawSchedule, Schedule, check_sched
 use serde::Deserialize;
 
 use super::loads::{Loads, Now, RingWeight};
-use super::rules::{Case, judge, share_of};
+use super::rules::{Case, Remark, judge, share_of};
 use super::table::{self, About, Context, Setting, SpeedRole, Trial};
 use crate::error::DynamicsError;
 use crate::model::{Effect, Model};
@@ -79,9 +79,9 @@ impl table::EffectTable for GravityTable {
         }
     }
 
-    fn advice(table: Option<&Self>, case: &Case<'_>) -> Vec<String> {
+    fn advice(table: Option<&Self>, case: &Case<'_>) -> Vec<Remark> {
         let load = case.load.axial.max(case.load.radial);
-        if load == 0.0 {
+        if !case.has_own_shaft || load == 0.0 {
             return Vec::new();
         }
         let carried = case.model.carried_inertia().map_or(0.0, |body| body.mass);

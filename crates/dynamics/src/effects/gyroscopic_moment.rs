@@ -42,7 +42,7 @@ use input::Problems;
 use serde::Deserialize;
 
 use super::loads::{Loads, Now};
-use super::rules::{Case, judge, share_of};
+use super::rules::{Case, Remark, judge, share_of};
 use super::table::{self, About, Context, Setting, SpeedRole, Trial};
 use crate::error::DynamicsError;
 use crate::kinematics::SlipRatios;
@@ -111,7 +111,7 @@ impl table::EffectTable for GyroscopicMomentTable {
         }
     }
 
-    fn advice(table: Option<&Self>, case: &Case<'_>) -> Vec<String> {
+    fn advice(table: Option<&Self>, case: &Case<'_>) -> Vec<Remark> {
         let load = case.ball_load();
         if load == 0.0 {
             return Vec::new();
@@ -128,10 +128,11 @@ impl table::EffectTable for GyroscopicMomentTable {
         let mut lines = judge("gyroscopic_moment", table.is_some(), ratio, &estimate);
         let hold = HOLD * load * diameter;
         if moment > hold {
-            lines.push(format!(
+            let text = format!(
                 "friction may not hold the balls: the gyroscopic moment {moment:.2e} N m is more than {HOLD} Q D_w \
                  = {hold:.2e} N m (Harris), and balls that turn with it are not modelled"
-            ));
+            );
+            lines.push(text.into());
         }
         lines
     }

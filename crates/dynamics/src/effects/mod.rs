@@ -50,7 +50,7 @@ use crate::error::DynamicsError;
 use crate::interactions::contact_damping::ContactDamping;
 use crate::kinematics::SlipRatios;
 use crate::mounting::Conditions;
-use rules::{Case, PeakLoad};
+use rules::{Case, PeakLoad, Remark};
 
 /// The tables `[effects.*]` of a scene.
 #[derive(Clone, Debug, Default, Deserialize, PartialEq)]
@@ -225,7 +225,7 @@ impl Effects {
     }
 
     /// What the rules of thumb say: a sentence each, with estimate and formula.
-    pub fn advice(&self, case: &Case<'_>) -> Vec<String> {
+    pub fn advice(&self, case: &Case<'_>) -> Vec<Remark> {
         let has_free_balls = self.names().contains(&"traction");
         let is_replaced =
             |name: &str| has_free_balls && REPLACED_BY_FREE_BALLS.iter().any(|(of, _)| *of == name);

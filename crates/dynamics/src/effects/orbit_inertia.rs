@@ -20,7 +20,7 @@ use contact::Meridian;
 use serde::Deserialize;
 
 use super::loads::{AtEquilibrium, Loads, Now};
-use super::rules::{Case, judge, share_of};
+use super::rules::{Case, Remark, judge, share_of};
 use super::table::{self, About, Need, Setting, SpeedRole, Trial};
 use crate::error::DynamicsError;
 use crate::kinematics::{Kinematics, RingSpeeds, SlipRatios, course_slopes};
@@ -44,7 +44,7 @@ impl table::EffectTable for OrbitInertiaTable {
         }
     }
 
-    fn advice(table: Option<&Self>, case: &Case<'_>) -> Vec<String> {
+    fn advice(table: Option<&Self>, case: &Case<'_>) -> Vec<Remark> {
         // Under thrust alone balls stay on their circle; a moment is in no estimate.
         if case.load.radial == 0.0 || case.has_inertia {
             return Vec::new();

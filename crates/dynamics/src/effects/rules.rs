@@ -60,6 +60,8 @@ pub struct Case<'a> {
     pub is_damped: bool,
     /// Whether loads or speed change in time.
     pub changes_in_time: bool,
+    /// Whether no other bearing carries its shaft: else what acts on the shaft is not judged beside it.
+    pub has_own_shaft: bool,
 }
 
 impl Case<'_> {
@@ -133,20 +135,47 @@ impl Case<'_> {
     }
 }
 
+/// What a rule of thumb says.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Remark {
+    /// A sentence with estimate and formula.
+    pub text: String,
+    /// What it judges; None: it only tells.
+    pub verdict: Option<Verdict>,
+}
+
+/// That an effect is off and matters, or on and does not.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Verdict {
+    /// Table or key of the scene.
+    pub key: String,
+    /// Whether it is on.
+    pub is_on: bool,
+    /// What it brings, over what is there without it.
+    pub ratio: f64,
+}
+
+impl From<String> for Remark {
+    fn from(text: String) -> Remark {
+        Remark { text, verdict: None }
+    }
+}
+
 /// Says that an effect is off and matters, or on and does not.
-pub fn judge(name: &str, is_on: bool, ratio: f64, estimate: &str) -> Vec<String> {
+pub fn judge(name: &str, is_on: bool, ratio: f64, estimate: &str) -> Vec<Remark> {
     judge_key(&format!("[effects.{name}]"), is_on, ratio, estimate)
 }
 
 /// The same of what a key of a scene turns on.
-pub fn judge_key(key: &str, is_on: bool, ratio: f64, estimate: &str) -> Vec<String> {
-    if !is_on && ratio >= MATTERS {
-        return vec![format!("{key} is off, but {estimate}")];
-    }
-    if is_on && ratio < NEGLIGIBLE {
-        return vec![format!("{key} is on, but {estimate}: it could be left off")];
-    }
-    Vec::new()
+pub fn judge_key(key: &str, is_on: bool, ratio: f64, estimate: &str) -> Vec<Remark> {
+    let text = match is_on {
+        false if ratio >= MATTERS => format!("{key} is off, but {estimate}"),
+        true if ratio < NEGLIGIBLE => format!("{key} is on, but {estimate}: it could be left off"),
+        _ => return Vec::new(),
+    };
+    let key = key.to_string();
+    let verdict = Some(Verdict { key, is_on, ratio });
+    vec![Remark { text, verdict }]
 }
 
 /// Ratio from which a share is said as so many times the whole.

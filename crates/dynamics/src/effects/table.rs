@@ -18,7 +18,7 @@ use contact::film::Lubricant;
 use input::{Clock, Problems, Quantity, Schedule};
 use ring::RingModel;
 
-use super::rules::{Case, PeakLoad};
+use super::rules::{Case, PeakLoad, Remark};
 use crate::error::DynamicsError;
 use crate::interactions::contact_damping::ContactDamping;
 use crate::kinematics::{BallSpeeds, RingSpeeds, SlipRatios};
@@ -154,7 +154,7 @@ pub trait EffectTable {
         Self: Sized;
 
     /// Rule of thumb for `raceway check`: sentences on an effect that is off and matters, or on and does not.
-    fn advice(_table: Option<&Self>, _case: &Case<'_>) -> Vec<String>
+    fn advice(_table: Option<&Self>, _case: &Case<'_>) -> Vec<Remark>
     where
         Self: Sized,
     {
@@ -207,7 +207,7 @@ pub trait EffectEntry {
     fn table(&self) -> Option<&dyn EffectTable>;
 
     /// Its rule of thumb.
-    fn advice(&self, case: &Case<'_>) -> Vec<String>;
+    fn advice(&self, case: &Case<'_>) -> Vec<Remark>;
 }
 
 impl<T: EffectTable> EffectEntry for Option<T> {
@@ -219,7 +219,7 @@ impl<T: EffectTable> EffectEntry for Option<T> {
         self.as_ref().map(|table| table as &dyn EffectTable)
     }
 
-    fn advice(&self, case: &Case<'_>) -> Vec<String> {
+    fn advice(&self, case: &Case<'_>) -> Vec<Remark> {
         T::advice(self.as_ref(), case)
     }
 }

@@ -23,7 +23,7 @@ use serde::Deserialize;
 
 use super::ball_centrifugal::BallCentrifugal;
 use super::loads::{Loads, Now};
-use super::rules::Case;
+use super::rules::{Case, Remark};
 use super::steady_balls::SteadyBalls;
 use super::table::{self, About, Context, Setting, SpeedRole};
 use crate::error::DynamicsError;
@@ -124,23 +124,22 @@ impl table::EffectTable for TractionTable {
         }
     }
 
-    fn advice(table: Option<&Self>, case: &Case<'_>) -> Vec<String> {
+    fn advice(table: Option<&Self>, case: &Case<'_>) -> Vec<Remark> {
         let Some(table) = table else { return Vec::new() };
         let (force, axial) = (case.centrifugal_force(), case.load.axial / case.n_balls());
         let mut advice = Vec::new();
         if !case.speeds.is_zero() && axial <= HIRANO * force {
-            advice.push(format!(
+            let text = format!(
                 "[effects.traction] is on, and balls may skid: F_a / (Z F_c) = {:.1}, and pure rolling needs more than \
                  {HIRANO:.0} (Hirano); look at the slip of the contacts and at cage_speed_rad_per_s",
                 axial / force
-            ));
+            );
+            advice.push(text.into());
         }
         if table.law == Law::LimitingShear {
-            advice.push(
-                "[effects.traction] has law = \"limiting_shear\", which is isothermal: above some 1 m/s of slip an oil \
-                 warms and thins, and its traction is less; look at the slip of the contacts"
-                    .to_string(),
-            );
+            let text = "[effects.traction] has law = \"limiting_shear\", which is isothermal: above some 1 m/s of slip \
+                        an oil warms and thins, and its traction is less; look at the slip of the contacts";
+            advice.push(text.to_string().into());
         }
         advice
     }

@@ -24,7 +24,7 @@ use input::{ANGLE, LENGTH, MASS, Problems, Quantity};
 use serde::Deserialize;
 
 use super::loads::{Loads, Now};
-use super::rules::{Case, PeakLoad, judge, share_of};
+use super::rules::{Case, PeakLoad, Remark, judge, share_of};
 use super::table::{self, About, Context, Need, Setting, SpeedRole, Trial};
 use crate::error::DynamicsError;
 use crate::kinematics::Speed;
@@ -81,10 +81,10 @@ impl table::EffectTable for UnbalanceTable {
         }
     }
 
-    fn advice(table: Option<&Self>, case: &Case<'_>) -> Vec<String> {
+    fn advice(table: Option<&Self>, case: &Case<'_>) -> Vec<Remark> {
         let load = case.load.axial.max(case.load.radial);
         let speed = case.speed(Side::Inner);
-        if load == 0.0 || speed == 0.0 {
+        if !case.has_own_shaft || load == 0.0 || speed == 0.0 {
             return Vec::new();
         }
         let carried = case.model.carried_inertia().map_or(0.0, |body| body.mass);
