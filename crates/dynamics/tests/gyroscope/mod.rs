@@ -148,7 +148,7 @@ fn a_ring_that_nothing_holds_is_a_gyroscope() {
 #[test]
 fn the_nutation_of_a_free_ring_does_not_grow() {
     let speed = Speed::constant(18e3 * std::f64::consts::PI / 30.0);
-    let model = free_ring(SMALL, Hold::Clamped, &speed, Frame::Turning);
+    let model = free_ring(TINY, Hold::Clamped, &speed, Frame::Turning);
     let n = 3000;
     let radius = RATE / (ratio(&model) * speed.at(0.0));
     let largest = |states: &[MotionState]| {
