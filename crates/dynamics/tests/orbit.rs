@@ -111,7 +111,6 @@ fn a_rotor_whirls_in_time_as_its_modes_with_balls_on_their_way_say() {
 /// balls takes less from a shaft that whirls along with them, and more from one that whirls against them. By two halves
 /// of a record in time.
 #[test]
-#[ignore = "16 000 steps; scripts/test-slow runs it"]
 fn damping_goes_round_with_the_balls() {
     let (dt, n) = (2e-6, 16000);
     let damping = Some(ContactDamping {

@@ -71,7 +71,6 @@ fn a_motion_rests_at_the_equilibrium() {
 /// something else that one has and the other lacks. Rings of coarse meshes that turn with their inertia; steps of 10 us
 /// are 15 to a ball that passes, and half of that leaves an eighth.
 #[test]
-#[ignore = "half a minute; scripts/test-slow runs it"]
 fn a_motion_of_elastic_rings_rests_there_as_its_step_shrinks() {
     let [_, mut model] = models(combined());
     let level = Level::hex8(90, 6, 1, 2);

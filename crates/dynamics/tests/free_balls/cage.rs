@@ -438,7 +438,6 @@ fn touched() -> ([Touches; 2], Vec<f64>) {
 /// touches its pocket at the same places on every way round, as all others do, in front and behind by turns; so all
 /// forces together repeat with the ball pass frequency of a place in space.
 #[test]
-#[ignore = "half a minute; scripts/test-slow runs it"]
 fn drifting_balls_touch_once_per_turn_at_each_place_and_together_at_the_ball_pass_frequency() {
     let ([first, second], sums) = touched();
     println!("{:?}", second[0]);
