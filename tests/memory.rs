@@ -250,10 +250,13 @@ fn a_run_short_of_memory_ends_with_a_message() {
     assert!(dir.snapshot()[step] == before[step]);
     let (mut forecast, mut ended, mut finished) = (0, 0, 0);
     // Between 400 and 480 MB the memory ends while HDF5, a library in C, writes a step.
-    let limits = (400_000..480_000).step_by(16_000).map(|limit| ("cyclic", limit));
+    let limits = (400_000..480_000).step_by(8_000).map(|limit| ("cyclic", limit));
     // Products of matrices reserve address space of twice the last cache for each thread, hardly any of it used: with
     // 300 MB of cache a run finishes in 4 GB only.
-    let wide = [330_000, 480_000, 600_000, 4_000_000, 16_000_000].into_iter();
+    let wide = [
+        330_000, 360_000, 480_000, 600_000, 2_000_000, 4_000_000, 16_000_000,
+    ]
+    .into_iter();
     for (backend, kilobytes) in wide
         .flat_map(|limit| [("cyclic", limit), ("sparse", limit)])
         .chain(limits)

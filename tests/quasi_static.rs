@@ -189,7 +189,15 @@ fn equilibria_cut_at_any_step_continue_bit_for_bit() {
     dir.run("whole", &["--threads", "2"]);
     assert_cuts_continue(
         &dir,
-        &[("0", "2"), ("7", "1"), ("8", "4"), ("20", "1"), ("40", "1")],
+        &[
+            ("0", "2"),
+            ("7", "1"),
+            ("8", "4"),
+            ("9", "2"),
+            ("20", "1"),
+            ("39", "2"),
+            ("40", "1"),
+        ],
     );
     for cut in ["cut0", "cut20", "cut40"] {
         let [whole, cut] = ["whole", cut].map(|out| summary(&dir, out));
