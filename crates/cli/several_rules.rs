@@ -48,10 +48,9 @@ impl<'a> Shared<'a> {
 
     /// Whether another remark is the same, or judges the same.
     fn is_of(&self, remark: &Remark) -> bool {
-        let judged = |remark: &Remark| remark.verdict.as_ref().map(|v| (v.key.clone(), v.is_on));
-        match judged(remark) {
-            None => self.remark == *remark,
-            of => judged(&self.remark) == of,
+        match (&self.remark.verdict, &remark.verdict) {
+            (Some(own), Some(other)) => (&own.key, own.is_on) == (&other.key, other.is_on),
+            _ => self.remark == *remark,
         }
     }
 
@@ -107,13 +106,12 @@ fn loads_with_rigid_rings(scene: &SeveralScene) -> Option<Vec<PeakLoad>> {
     let rings = scene.bearings.iter().map(|_| [None, None]).collect();
     let mut assembly = assembly_with_rings(&scene, rings).ok()?;
     let mut solver = AssemblySolver::new(&assembly).ok()?;
-    let times = [0.0, end(&scene.analysis)];
+    let mut times = vec![0.0, end(&scene.analysis)];
+    times.dedup();
     let mut loads = vec![PeakLoad::default(); assembly.bearings.len()];
-    for time in times.iter().take(if times[1] > 0.0 { 2 } else { 1 }) {
-        for (peak, load) in loads
-            .iter_mut()
-            .zip(at(&scene, &mut assembly, &mut solver, *time).ok()?)
-        {
+    for time in times {
+        let found = at(&scene, &mut assembly, &mut solver, time).ok()?;
+        for (peak, load) in loads.iter_mut().zip(found) {
             peak.axial = peak.axial.max(load.axial);
             peak.radial = peak.radial.max(load.radial);
         }
