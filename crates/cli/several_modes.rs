@@ -24,7 +24,6 @@ use crate::several::{make_folder, placed, say_types, solving, warnings_at, words
 use crate::several_files::say_where_bodies_are;
 use crate::several_read::{ReadList, read_list, require_memory_of_all};
 use crate::several_ready::require_space;
-use crate::several_rules;
 
 /// What vibrates, in words.
 const NAME: &str = "bearings on their shaft";
@@ -42,7 +41,7 @@ pub fn run(
     progress.stage("reading meshes");
     let ReadList {
         mut assembly,
-        doubts: mut warnings,
+        mut remarks,
         ..
     } = read_list(scene, scene, |assembly| require_memory_of_all(scene, assembly))?;
     require_space(scene, &assembly, (dir, 0), limits)?;
@@ -65,8 +64,10 @@ pub fn run(
     let found = modes(&assembly, &solution, settings, &mut told).map_err(solving)?;
     progress.advance();
     progress.finish();
-    warnings.extend(warnings_at(&words_of(None, None), &assembly, &solution));
-    warnings.extend(warnings_of(scene, &found, wanted));
+    remarks
+        .warnings
+        .extend(warnings_at(&words_of(None, None), &assembly, &solution));
+    remarks.warnings.extend(warnings_of(scene, &found, wanted));
     let whole = set_of_several(&found, |mode| &mode.whole);
     write((scene, &assembly), &solution, &found, dir, start)?;
     laps.merge(&found.laps);
@@ -76,8 +77,8 @@ pub fn run(
         status: "finished".to_string(),
         iterations: solution.shaft.iterations,
         residual: solution.shaft.error,
-        warnings,
-        advice: several_rules::advice(scene, &assembly)?,
+        warnings: remarks.warnings,
+        advice: remarks.advice,
         laps,
     };
     let shown = ListState::of_equilibrium(&assembly, &solution);

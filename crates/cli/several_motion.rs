@@ -30,13 +30,13 @@ use crate::instants::{self, Due, OverInstants, WrittenSteps};
 use crate::motion::LAST_GOOD;
 use crate::options::Limits;
 use crate::progress::Progress;
+use crate::remarks::Remarks;
 use crate::several::{self, make_folder, require_same_list, say_types, solving, warnings_at};
 use crate::several_files::{close_bearing, create_files, cuts_of_list, resume_all, resume_tables};
 use crate::several_instant::rolling_start;
 use crate::several_ledger::LedgerWatch;
 use crate::several_read::{ReadList, read_list, require_memory_of_all};
 use crate::several_ready::{ready, require_space, say_left_out};
-use crate::several_rules;
 use crate::several_state;
 
 /// Runs the motion from its equilibrium.
@@ -52,7 +52,7 @@ pub fn run(
     progress.stage("reading meshes");
     let ReadList {
         mut assembly,
-        doubts: mut warnings,
+        mut remarks,
         surveys,
     } = agree(read_list(scene, scene, |assembly| {
         require_memory_of_all(scene, assembly)?;
@@ -61,7 +61,7 @@ pub fn run(
     let mut laps = Laps::default();
     laps.add(READ, start.elapsed().as_secs_f64());
     let (solution, rates) = settle((scene, dynamic), &mut assembly, &progress, &mut laps)?;
-    warnings.extend(warnings_at("", &assembly, &solution));
+    remarks.warnings.extend(warnings_at("", &assembly, &solution));
     assembly.release();
     progress.stage("factoring the effective matrices");
     let motion = laps.time(FACTOR, || ready(scene, dynamic, &assembly))?;
@@ -93,7 +93,7 @@ pub fn run(
         dir,
     };
     instants::record(&mut march, RestartState::Stored)?;
-    march.finish_run(progress, limits, warnings, start)
+    march.finish_run(progress, limits, remarks, start)
 }
 
 /// Equilibrium at t = 0, and the velocities with which the motion starts if they are asked for.
@@ -134,7 +134,7 @@ pub fn resume(
     progress.stage("reading meshes");
     let ReadList {
         mut assembly,
-        doubts: warnings,
+        remarks,
         surveys,
     } = agree(read_list(&scene, &scene, |assembly| {
         require_space(&scene, assembly, (&dir, step), limits)
@@ -172,7 +172,7 @@ pub fn resume(
         written: WrittenSteps::all_of(step),
         dir: &dir,
     };
-    march.finish_run(progress, limits, warnings, start)
+    march.finish_run(progress, limits, remarks, start)
 }
 
 /// What all bearings show.
@@ -219,7 +219,7 @@ impl ListMarch<'_> {
         mut self,
         mut progress: Progress,
         limits: &Limits,
-        mut warnings: Vec<String>,
+        mut remarks: Remarks,
         start: Instant,
     ) -> Result<(), Failure> {
         let mut clock = Stopwatch::start();
@@ -236,22 +236,24 @@ impl ListMarch<'_> {
         for (i, watch) in self.watches.iter().enumerate() {
             let (name, motion) = (&self.scene.bearings[i].name, &self.motion.bearings[i]);
             let own = watch.warnings(motion.surfaces(), |step| motion.time(step));
-            warnings.extend(own.into_iter().map(|text| format!("bearing {name:?}: {text}")));
+            remarks
+                .warnings
+                .extend(own.into_iter().map(|text| format!("bearing {name:?}: {text}")));
         }
         // A run that failed says why, not what its failure did to the files; one that stopped must have its step.
         let of_seats = match (self.close_bearings(&status, start), &ended) {
             (Err(_), Err(Failure::User(_) | Failure::Numerical(_))) => return ended,
             (of_seats, _) => of_seats?,
         };
-        warnings.extend(of_seats);
+        remarks.warnings.extend(of_seats);
         self.laps.add(TOTAL, start.elapsed().as_secs_f64());
         let last = ListState::of_motion(self.assembly, self.motion, &self.state);
         let findings = SeveralFindings {
             status,
             iterations: self.newton as usize,
             residual: self.ledgers.worst,
-            warnings,
-            advice: several_rules::advice(self.scene, self.assembly)?,
+            warnings: remarks.warnings,
+            advice: remarks.advice,
             laps: self.laps,
         };
         let summary = SeveralSummary::new(self.scene, self.assembly, &last, findings);

@@ -21,9 +21,9 @@ use scene::{QuasiStatic, Scene, SeveralScene};
 use timer::Laps;
 
 use crate::instants;
+use crate::remarks::Remarks;
 use crate::several_files::close_bearing;
 use crate::several_quasi_state::ListCounts;
-use crate::several_rules;
 
 /// What has been found and written of a run.
 pub struct FoundList {
@@ -112,7 +112,7 @@ impl EndedList {
         self,
         (scene, mut solver, rolling): (&SeveralScene, AssemblySolver, &[Option<Rolling>]),
         dir: &Path,
-        mut warnings: Vec<String>,
+        mut remarks: Remarks,
         (read, start): (f64, Instant),
     ) -> Result<(), Failure> {
         let EndedList {
@@ -126,8 +126,8 @@ impl EndedList {
         solver.add_laps(&found.laps);
         let failed = ended.as_ref().err();
         let status = failed.map_or("finished".to_string(), Failure::status);
-        warnings.append(&mut found.first_warnings);
-        warnings.extend(instants::more_warn(found.counts.warned));
+        remarks.warnings.append(&mut found.first_warnings);
+        remarks.warnings.extend(instants::more_warn(found.counts.warned));
         // A run that failed says why, not what its failure did to the files; one that stopped must have its step.
         let of_seats = match (
             found.close(files, (&solver, rolling), (dir, &status), start),
@@ -136,7 +136,7 @@ impl EndedList {
             (Err(_), Err(Failure::User(_) | Failure::Numerical(_))) => return ended,
             (of_seats, _) => of_seats?,
         };
-        warnings.extend(of_seats);
+        remarks.warnings.extend(of_seats);
         let mut laps = Laps::default();
         laps.add(READ, read);
         laps.merge(&solver.laps());
@@ -146,8 +146,8 @@ impl EndedList {
             status,
             iterations: found.counts.iterations as usize,
             residual: found.last.shaft.error,
-            warnings,
-            advice: several_rules::advice(scene, &found.assembly)?,
+            warnings: remarks.warnings,
+            advice: remarks.advice,
             laps,
         };
         let summary = SeveralSummary::new(scene, &found.assembly, &last, findings);

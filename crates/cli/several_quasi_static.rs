@@ -45,7 +45,7 @@ pub fn run(
     let mut progress = Progress::new(1 + settings.n_steps);
     let ReadList {
         assembly,
-        doubts,
+        remarks,
         surveys,
     } = read_all(scene, (dir, 0), limits, &progress)?;
     let read = start.elapsed().as_secs_f64();
@@ -91,7 +91,7 @@ pub fn run(
         progress.advance();
         course.run(progress, limits, start)
     })?;
-    ended.conclude((scene, list.solver, &list.rolling), dir, doubts, (read, start))
+    ended.conclude((scene, list.solver, &list.rolling), dir, remarks, (read, start))
 }
 
 /// Goes on with equilibria whose bearings and step have been read.
@@ -112,7 +112,7 @@ pub fn resume(
     progress.start_at(1 + step);
     let ReadList {
         assembly,
-        doubts,
+        remarks,
         surveys,
     } = read_all(&scene, (&dir, step), limits, &progress)?;
     let read = start.elapsed().as_secs_f64();
@@ -151,7 +151,7 @@ pub fn resume(
         };
         course.run(progress, limits, start)
     })?;
-    ended.conclude((&scene, list.solver, &list.rolling), &dir, doubts, (read, start))
+    ended.conclude((&scene, list.solver, &list.rolling), &dir, remarks, (read, start))
 }
 
 /// A list whose run has done so many steps in a folder, if there is room for it.

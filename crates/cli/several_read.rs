@@ -7,14 +7,15 @@ use results::list_memory::require_memory_of_list;
 use results::survey::{Survey, say_doubts};
 use scene::{Scene, SeveralScene, build_assembly, doubts};
 
+use crate::remarks::Remarks;
 use crate::several_rules;
 
 /// A list that has been read.
 pub struct ReadList {
     /// The bearings on their shaft.
     pub assembly: Assembly,
-    /// What is most likely a slip in the scene.
-    pub doubts: Vec<String>,
+    /// What its summary says of the scene; it has been said.
+    pub remarks: Remarks,
     /// Where the bearings keep fields.
     pub surveys: Vec<Survey>,
 }
@@ -27,14 +28,17 @@ pub fn read_list(
     test: impl FnOnce(&Assembly) -> Result<(), Failure>,
 ) -> Result<ReadList, Failure> {
     let (assembly, _) = build_assembly(point)?;
-    let doubts = all_doubts(scene, &assembly);
-    say_doubts(&doubts);
+    let warnings = all_doubts(scene, &assembly);
+    say_doubts(&warnings);
     test(&assembly)?;
-    several_rules::say(scene, &assembly)?;
+    let remarks = Remarks {
+        warnings,
+        advice: several_rules::say(scene, &assembly)?,
+    };
     let surveys = surveys(scene, &assembly)?;
     Ok(ReadList {
         assembly,
-        doubts,
+        remarks,
         surveys,
     })
 }

@@ -25,6 +25,7 @@ use crate::instants::{self, Due, OverInstants, WrittenSteps};
 use crate::options::{Limits, SweepPart};
 use crate::points_ahead::{Grouping, PointAnswer, PointsAhead};
 use crate::progress::Progress;
+use crate::remarks::Remarks;
 use crate::several::{
     SeveralPoint, add_laps, at_point, column, make_folder, placed, points, require_same_list, say_types,
     snapshot, solving, stage_text, warnings_at, words_of,
@@ -32,7 +33,6 @@ use crate::several::{
 use crate::several_files::close_bearing;
 use crate::several_read::{ReadList, read_list, require_memory_of_all};
 use crate::several_ready::forecast;
-use crate::several_rules;
 
 /// Runs a scene at rest, or a part of its sweep; its results go into a folder.
 pub fn run(
@@ -50,7 +50,7 @@ pub fn run(
     progress.stage("reading meshes");
     let ReadList {
         assembly,
-        doubts,
+        remarks,
         surveys,
     } = agree(read_list(&points[0].1, scene, |assembly| {
         require_memory_of_all(scene, assembly)?;
@@ -79,7 +79,7 @@ pub fn run(
             points,
             first,
             ahead: PointsAhead::new(scope, &solve, group, None),
-            solved: SolvedLists::of_none(assembly, doubts),
+            solved: SolvedLists::of_none(assembly, remarks),
             surveys,
             written: WrittenSteps::default(),
             dir,
@@ -117,7 +117,7 @@ struct SolvedLists {
     last: Option<AssemblySolution>,
     /// Newton iterations so far.
     iterations: usize,
-    warnings: Vec<String>,
+    remarks: Remarks,
     /// Wall time of all points by type of bearing, summed over threads.
     laps: Vec<Laps>,
 }
@@ -143,14 +143,14 @@ impl ListCases<'_, '_, '_> {
 }
 
 impl SolvedLists {
-    fn of_none(assembly: Assembly, warnings: Vec<String>) -> SolvedLists {
+    fn of_none(assembly: Assembly, remarks: Remarks) -> SolvedLists {
         SolvedLists {
             assembly,
             files: None,
             n: 0,
             last: None,
             iterations: 0,
-            warnings,
+            remarks,
             laps: Vec::new(),
         }
     }
@@ -158,7 +158,9 @@ impl SolvedLists {
     /// Takes note of a load case whose words in messages are `at`.
     fn take(&mut self, (point, assembly): (AssemblyPoint, Assembly), at: &str) {
         let AssemblyPoint { solution, laps, .. } = point;
-        self.warnings.extend(warnings_at(at, &assembly, &solution));
+        self.remarks
+            .warnings
+            .extend(warnings_at(at, &assembly, &solution));
         self.iterations += solution.shaft.iterations;
         add_laps(&mut self.laps, &laps);
         (self.assembly, self.last) = (assembly, Some(solution));
@@ -190,13 +192,13 @@ impl SolvedLists {
             (Err(_), Err(_)) => return ended,
             (seats, _) => seats?,
         };
-        self.warnings.extend(seats);
+        self.remarks.warnings.extend(seats);
         let findings = SeveralFindings {
             status,
             iterations: self.iterations,
             residual: last.shaft.error,
-            warnings: self.warnings,
-            advice: several_rules::advice(scene, &self.assembly)?,
+            warnings: self.remarks.warnings,
+            advice: self.remarks.advice,
             laps,
         };
         let shown = ListState::of_equilibrium(&self.assembly, &last);

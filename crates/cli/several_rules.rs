@@ -82,12 +82,13 @@ impl<'a> Shared<'a> {
     }
 }
 
-/// The same, said before a run begins.
-pub fn say(scene: &SeveralScene, assembly: &Assembly) -> Result<(), Failure> {
-    for line in advice(scene, assembly)? {
+/// The same; says it.
+pub fn say(scene: &SeveralScene, assembly: &Assembly) -> Result<Vec<String>, Failure> {
+    let advice = advice(scene, assembly)?;
+    for line in &advice {
         print::note(format_args!("advice: {line}"));
     }
-    Ok(())
+    Ok(advice)
 }
 
 fn quoted(names: &[&str]) -> String {
