@@ -11,8 +11,7 @@
 //!
 //! Reference: Randall and Antoni, Mechanical Systems and Signal Processing 25 (2011) 485, section 3. Cost: n log n.
 
-use realfft::RealFftPlanner;
-use realfft::num_complex::Complex64;
+use fft::num_complex::Complex64;
 
 /// A spectrum from frequency 0 on.
 #[derive(Clone, Debug, PartialEq)]
@@ -40,8 +39,7 @@ pub fn density(signal: &[f64], rate: f64) -> LineSpectrum {
 /// Envelope of what of a signal lies between two frequencies, Hz.
 pub fn envelope(signal: &[f64], rate: f64, [low, high]: [f64; 2]) -> Vec<f64> {
     let n = signal.len();
-    let mut planner = RealFftPlanner::<f64>::new();
-    let (forward, inverse) = (planner.plan_fft_forward(n), planner.plan_fft_inverse(n));
+    let (forward, inverse) = (fft::forward(n), fft::inverse(n));
     let mut samples = signal.to_vec();
     let mut lines = forward.make_output_vec();
     forward
@@ -83,7 +81,7 @@ fn spectrum(signal: &[f64], window: &[f64], rate: f64, value: impl Fn(Complex64)
     let n = signal.len();
     let mean = signal.iter().sum::<f64>() / n as f64;
     let mut samples: Vec<f64> = signal.iter().zip(window).map(|(x, w)| w * (x - mean)).collect();
-    let forward = RealFftPlanner::<f64>::new().plan_fft_forward(n);
+    let forward = fft::forward(n);
     let mut lines = forward.make_output_vec();
     forward
         .process(&mut samples, &mut lines)

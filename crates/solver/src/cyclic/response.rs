@@ -7,9 +7,9 @@
 //! Cost: 3 n solves in harmonic space, of that part of the factor which begins with the first chosen node, and 9 n^2
 //! inverse FFTs for n chosen nodes. Memory: 9 N n^2 numbers, 5 MB for 10 nodes and 720 sectors.
 
+use fft::num_complex::Complex;
 use pulp::Arch;
 use rayon::prelude::*;
-use realfft::num_complex::Complex;
 
 use super::factor::CyclicCholesky;
 use super::patch::{BEYOND, Compliance, PatchWeights};

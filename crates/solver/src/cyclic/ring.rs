@@ -6,7 +6,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use comm::Communicator;
-use realfft::{ComplexToReal, RealFftPlanner, RealToComplex};
+use fft::{ComplexToReal, RealToComplex};
 
 use super::factor_rows::FactorRows;
 use super::matrix::{CyclicMatrix, check_ascending};
@@ -121,7 +121,6 @@ impl CyclicRing {
             .chunks_exact(width.max(1))
             .flat_map(|sector| order.iter().map(|&node| sector[node]))
             .collect();
-        let mut planner = RealFftPlanner::new();
         Ok(CyclicRing {
             comm: Communicator::Serial,
             shared: Arc::new(SharedRing {
@@ -134,8 +133,8 @@ impl CyclicRing {
                     .map(|c| c.shift.unsigned_abs() as usize)
                     .max()
                     .unwrap_or(0),
-                forward: planner.plan_fft_forward(n_sectors),
-                inverse: planner.plan_fft_inverse(n_sectors),
+                forward: fft::forward(n_sectors),
+                inverse: fft::inverse(n_sectors),
                 may_be_mirrored: half_way.is_some(),
                 trailing: if last.is_empty() { 0 } else { width - last.len() },
                 link_blocks: links.iter().map(block).collect(),

@@ -10,9 +10,9 @@
 
 use std::sync::Arc;
 
+use fft::ComplexToReal;
+use fft::num_complex::Complex;
 use rayon::prelude::*;
-use realfft::ComplexToReal;
-use realfft::num_complex::Complex;
 
 use super::phases::LANES;
 use super::ring::{ABSENT, CyclicRing};
