@@ -19,8 +19,9 @@ use crate::storage::{Coding, Compression, ErrorBound, Precision};
 
 /// Size of a compressed chunk, bytes: large enough for the filters, small enough for their caches.
 const CHUNK_BYTES: usize = 1 << 18;
-/// Level of deflate for what is compressed in any case, where the scene asks for no other.
-const ROUNDED_LEVEL: u8 = 1;
+/// Level of deflate for what is compressed in any case, where the scene asks for no other. Of rounded stress, level 2
+/// of zlib-ng makes 5 % less than level 1 of zlib in half the time; level 1 of zlib-ng makes 29 % more.
+const ROUNDED_LEVEL: u8 = if cfg!(feature = "static-hdf5") { 2 } else { 1 };
 /// Attribute of such an array: the bound, Pa.
 const ERROR_BOUND: &str = "error_bound";
 /// A field that has a value at every point.
