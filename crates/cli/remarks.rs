@@ -37,7 +37,7 @@ impl Remarks {
     }
 
     /// The same and what was found at the start of the run.
-    pub fn with(mut self, warnings: Vec<String>) -> Remarks {
+    pub fn with(mut self, warnings: impl IntoIterator<Item = String>) -> Remarks {
         self.warnings.extend(warnings);
         self
     }

@@ -41,7 +41,7 @@ pub fn run(
     progress.stage("reading meshes");
     let ReadList {
         mut assembly,
-        mut remarks,
+        remarks,
         ..
     } = read_list(scene, scene, |assembly| require_memory_of_all(scene, assembly))?;
     require_space(scene, &assembly, (dir, 0), limits)?;
@@ -64,10 +64,9 @@ pub fn run(
     let found = modes(&assembly, &solution, settings, &mut told).map_err(solving)?;
     progress.advance();
     progress.finish();
-    remarks
-        .warnings
-        .extend(warnings_at(&words_of(None, None), &assembly, &solution));
-    remarks.warnings.extend(warnings_of(scene, &found, wanted));
+    let remarks = remarks
+        .with(warnings_at(&words_of(None, None), &assembly, &solution))
+        .with(warnings_of(scene, &found, wanted));
     let whole = set_of_several(&found, |mode| &mode.whole);
     write((scene, &assembly), &solution, &found, dir, start)?;
     laps.merge(&found.laps);

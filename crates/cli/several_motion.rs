@@ -52,7 +52,7 @@ pub fn run(
     progress.stage("reading meshes");
     let ReadList {
         mut assembly,
-        mut remarks,
+        remarks,
         surveys,
     } = agree(read_list(scene, scene, |assembly| {
         require_memory_of_all(scene, assembly)?;
@@ -61,7 +61,7 @@ pub fn run(
     let mut laps = Laps::default();
     laps.add(READ, start.elapsed().as_secs_f64());
     let (solution, rates) = settle((scene, dynamic), &mut assembly, &progress, &mut laps)?;
-    remarks.warnings.extend(warnings_at("", &assembly, &solution));
+    let remarks = remarks.with(warnings_at("", &assembly, &solution));
     assembly.release();
     progress.stage("factoring the effective matrices");
     let motion = laps.time(FACTOR, || ready(scene, dynamic, &assembly))?;
@@ -245,7 +245,7 @@ impl ListMarch<'_> {
             (Err(_), Err(Failure::User(_) | Failure::Numerical(_))) => return ended,
             (of_seats, _) => of_seats?,
         };
-        remarks.warnings.extend(of_seats);
+        let remarks = remarks.with(of_seats);
         self.laps.add(TOTAL, start.elapsed().as_secs_f64());
         let last = ListState::of_motion(self.assembly, self.motion, &self.state);
         let findings = SeveralFindings {

@@ -112,7 +112,7 @@ impl EndedList {
         self,
         (scene, mut solver, rolling): (&SeveralScene, AssemblySolver, &[Option<Rolling>]),
         dir: &Path,
-        mut remarks: Remarks,
+        remarks: Remarks,
         (read, start): (f64, Instant),
     ) -> Result<(), Failure> {
         let EndedList {
@@ -126,8 +126,9 @@ impl EndedList {
         solver.add_laps(&found.laps);
         let failed = ended.as_ref().err();
         let status = failed.map_or("finished".to_string(), Failure::status);
-        remarks.warnings.append(&mut found.first_warnings);
-        remarks.warnings.extend(instants::more_warn(found.counts.warned));
+        let remarks = remarks
+            .with(std::mem::take(&mut found.first_warnings))
+            .with(instants::more_warn(found.counts.warned));
         // A run that failed says why, not what its failure did to the files; one that stopped must have its step.
         let of_seats = match (
             found.close(files, (&solver, rolling), (dir, &status), start),
@@ -136,7 +137,7 @@ impl EndedList {
             (Err(_), Err(Failure::User(_) | Failure::Numerical(_))) => return ended,
             (of_seats, _) => of_seats?,
         };
-        remarks.warnings.extend(of_seats);
+        let remarks = remarks.with(of_seats);
         let mut laps = Laps::default();
         laps.add(READ, read);
         laps.merge(&solver.laps());

@@ -82,7 +82,7 @@ impl<'a> Shared<'a> {
     }
 }
 
-/// The same; says it.
+/// The same, said before a run begins.
 pub fn say(scene: &SeveralScene, assembly: &Assembly) -> Result<Vec<String>, Failure> {
     let advice = advice(scene, assembly)?;
     for line in &advice {
