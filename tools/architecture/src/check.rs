@@ -1,6 +1,6 @@
 //! Rules that hold or not: dependencies and words.
 
-use regex::Regex;
+use regex_lite::Regex;
 
 use crate::place::Place;
 use crate::rules::{Rules, WordRule};

@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 use anyhow::bail;
-use regex::Regex;
+use regex_lite::Regex;
 
 use crate::circles::circles;
 use crate::imports::{File, Import, Imports};
