@@ -49,11 +49,7 @@ impl StripLaw {
     /// `cuts`, from -1 to 1. Where strips overlap by less than `least`, m, the ball is taken to be so much nearer.
     pub fn loads(&self, line: &StripLine, (d, least): (f64, f64), angle: f64, cuts: &[f64]) -> StripLoads {
         let corners = self.corners(line, angle);
-        let gaps = corners.windows(2).filter(|piece| piece[0][0] < piece[1][0]);
-        let nearest = gaps
-            .map(|piece| -self.deepest(piece, 0.0))
-            .fold(f64::INFINITY, f64::min);
-        let d = d.max(nearest + least);
+        let d = d.max(self.first_of(&corners) + least);
         let touched = corners.windows(2).filter_map(|piece| self.touched(piece, d));
         let ends = touched.fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], ([low, high], _)| {
             [a.min(low), b.max(high)]
@@ -79,6 +75,18 @@ impl StripLaw {
             half_width,
             parts: cuts.windows(2).map(part).collect(),
         }
+    }
+
+    /// Hertz approach at which the first strip touches at a contact angle, rad, in m: 0 on a smooth groove, more over
+    /// missing material.
+    pub fn first_touch(&self, line: &StripLine, angle: f64) -> f64 {
+        self.first_of(&self.corners(line, angle))
+    }
+
+    fn first_of(&self, corners: &[[f64; 2]]) -> f64 {
+        let pieces = corners.windows(2).filter(|piece| piece[0][0] < piece[1][0]);
+        let gaps = pieces.map(|piece| -self.deepest(piece, 0.0));
+        gaps.fold(f64::INFINITY, f64::min)
     }
 
     /// Integrals over the strips that touch between two places y, and where these begin and end, m.

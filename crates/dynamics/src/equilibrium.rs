@@ -12,8 +12,6 @@ use crate::bodies::AXES;
 use crate::condensation::Condensation;
 use crate::displacements::Displacements;
 use crate::error::DynamicsError;
-use crate::footprint::{loaded, sizes};
-use crate::interactions::raceway_contact::on_rings;
 use crate::model::MAX_TILT;
 use crate::system::newton::{Policy, RoundOff, Shortening};
 use crate::system::tangent::scale_tangent;
@@ -207,30 +205,6 @@ pub fn check_held(
 fn largest_slope(parts: &BearingParts) -> f64 {
     let slopes = parts.balls.iter().map(|ball| ball.dofs[0].load_slope);
     slopes.fold(0.0, f64::max)
-}
-
-/// Unloaded balls rest midway between their raceways: those without a load of their own that are not squeezed between
-/// both. A ball that Newton left touching a raceway, with a force below its residual, is unloaded.
-pub fn centre_unloaded(parts: &BearingParts, u: &mut Displacements) {
-    let loads: Vec<f64> = (0..parts.balls.len())
-        .map(|ball| parts.ball_load(ball).norm())
-        .collect();
-    // The weight of a ball across its meridian plane leaves round-off in that plane.
-    let weightless = 4.0 * f64::EPSILON * loads.iter().copied().fold(0.0, f64::max);
-    let states = parts.states_at(u);
-    let loaded = loaded(sizes(&on_rings(&states)));
-    let pairs = parts.contacts.sites.chunks_exact(2).zip(states.chunks_exact(2));
-    for ((pair, states), loaded) in pairs.zip(loaded.chunks_exact(2)) {
-        let ball = pair[0].ball;
-        if loaded == [true, true] || loads[ball] > weightless {
-            continue;
-        }
-        debug_assert!([pair[0].side, pair[1].side] == Side::BOTH);
-        // Groove centres seen from the ball, then the point of equal gap on their line.
-        let [centre_inner, centre_outer] = [0, 1].map(|i| states[i].reach().map(|l| -l));
-        let shift = contact::geometry::midway(centre_inner, centre_outer, pair[0].touching, pair[1].touching);
-        u.balls[ball] = u.balls[ball] + shift;
-    }
 }
 
 impl BearingParts {

@@ -22,10 +22,11 @@ use ring::RingModel;
 /// Groove angle kept from the rim by a contact that is not on the groove, as a share of the groove.
 const RIM_SHARE: f64 = 0.05;
 /// Force over the largest below which a contact is unloaded: what Newton leaves on balls that touch without load.
-const LOADED_SHARE: f64 = 1e-9;
-/// Force over the largest below which a contact may stand beyond the rim of a flexible ring's groove, and acts on the
-/// ring just inside it: a ball that lies between the shoulders by its own weight changes nothing.
-const SLIGHT_SHARE: f64 = 1e-3;
+pub const LOADED_SHARE: f64 = 1e-9;
+/// Force over the largest on the same raceway below which a contact may stand beyond the rim of a flexible ring's
+/// groove, and acts on the ring just inside it: a ball that lies between the shoulders by its own weight, or that its
+/// centrifugal force presses on the other raceway, changes next to nothing.
+const SLIGHT_SHARE: f64 = 1e-2;
 
 /// Samples of a faceted groove from rim to rim.
 const FACET_SAMPLES: usize = 200;
@@ -112,17 +113,16 @@ fn place_patch(
 
 /// Which contacts carry load, by site, from the sizes of their forces, N.
 pub fn loaded(forces: impl Iterator<Item = f64> + Clone) -> Vec<bool> {
-    above(LOADED_SHARE, forces)
-}
-
-/// Which contacts carry more than a slight load.
-pub fn well_loaded(forces: impl Iterator<Item = f64> + Clone) -> Vec<bool> {
-    above(SLIGHT_SHARE, forces)
-}
-
-fn above(share: f64, forces: impl Iterator<Item = f64> + Clone) -> Vec<bool> {
-    let limit = share * forces.clone().fold(0.0, f64::max);
+    let limit = LOADED_SHARE * forces.clone().fold(0.0, f64::max);
     forces.map(|force| force > limit).collect()
+}
+
+/// Which contacts carry more than a slight load, over the largest on their raceway: in sites, inner and outer take turns.
+pub fn well_loaded(forces: impl Iterator<Item = f64> + Clone) -> Vec<bool> {
+    let largest = |side| forces.clone().skip(side).step_by(2).fold(0.0, f64::max);
+    let limits = [0, 1].map(|side| SLIGHT_SHARE * largest(side));
+    let sites = forces.clone().enumerate();
+    sites.map(|(site, force)| force > limits[site % 2]).collect()
 }
 
 /// Sizes of forces, N.

@@ -49,6 +49,7 @@ mod relaxation;
 pub mod shoulders;
 pub mod surface_equilibrium;
 pub mod surfaces;
+mod unloaded_balls;
 
 pub use effects::{Effect, Loads};
 pub use error::DynamicsError;

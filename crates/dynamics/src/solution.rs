@@ -9,7 +9,6 @@ use crate::bearing::{BearingParts, CONTACTS, SHAFT, SlidingSeat};
 use crate::displacements::Displacements;
 use crate::effects::Loads;
 use crate::effects::steady_balls::SteadyBalls;
-use crate::equilibrium::centre_unloaded;
 use crate::error::DynamicsError;
 use crate::footprint::{Footprint, loaded, sizes};
 use crate::interactions::carried_site::across_on_ball;
@@ -19,6 +18,7 @@ use crate::model::Model;
 use crate::pose::Pose;
 use crate::surfaces::{EllipseKind, Strips};
 use crate::system::{FiniteMotion, Interval};
+use crate::unloaded_balls::centre_unloaded;
 
 /// Peak pressure that leaves a permanent indentation of 1e-4 of the ball diameter in bearing steel, Pa: ISO 76, for
 /// ball bearings.

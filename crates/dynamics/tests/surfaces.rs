@@ -188,6 +188,45 @@ fn orders_of_waves_move_a_rigid_bearing_as_they_must() {
     }
 }
 
+/// Wrong: a ball that a profile unloads would be put midway between smooth grooves, and press on the raceway that lacks
+/// nothing. Forces of each ball balance, those of the unloaded ones are none, and they stand free of both raceways.
+#[test]
+fn balls_unloaded_by_profiles_touch_neither_raceway() {
+    let case = Case::axial(300.0);
+    let angle = case.rigid().geometry.free_contact_angle();
+    let spall = Spall {
+        azimuth: 0.0,
+        groove_angle: angle,
+        length: 1.5e-3,
+        width: 4e-3,
+        depth: 50e-6,
+        edge: 0.0,
+    };
+    let spalled = Profiles {
+        spalls: vec![spall],
+        ..Profiles::default()
+    };
+    for side in Side::BOTH {
+        for profiles in [&waves(2, 4e-6), &waves(3, 20e-6), &spalled] {
+            let found = equilibrium(&with_strips(case.rigid(), side, None, profiles));
+            let unloaded = found.balls.iter().filter(|ball| ball.outer.force_n == 0.0);
+            assert!(unloaded.count() > 0, "{side:?}: all balls are loaded");
+            for (i, ball) in found.balls.iter().enumerate() {
+                let [inner, outer] = [ball.inner.force_n, ball.outer.force_n];
+                assert!(
+                    (inner - outer).abs() <= 0.02 * outer,
+                    "{side:?}, ball {i}: {inner} N and {outer} N"
+                );
+            }
+            assert!(
+                found.work_defect.abs() < 1e-9 * found.hertz_energy,
+                "{}",
+                found.work_defect
+            );
+        }
+    }
+}
+
 /// Wrong: a ball over a wide spall deeper than its sag would sink by anything else than k_t L^2/8. The approach of a
 /// bearing whose only balls are over spalls follows: every ball over its own, so that all stay equal.
 #[test]

@@ -155,6 +155,17 @@ impl Site {
         Some(StripSite::new(strips, &self.law, self.touching, self.side.sign()))
     }
 
+    /// |l| at which they touch along the direction of `l`, with what facets and profiles lack or add there, m.
+    pub fn touching_along(&self, l: Meridian) -> f64 {
+        let (state, approach) = self.place(l);
+        let of_facets = approach - (state.length - self.touching);
+        let of_strips = |strips: &Strips| {
+            let (law, line) = (&strips.surface.law, strips.line());
+            Some(law.first_touch(&line, state.angle)).filter(|touch| touch.is_finite())
+        };
+        self.touching - of_facets + self.strips.as_ref().and_then(of_strips).unwrap_or(0.0)
+    }
+
     /// The contact at l, still without its force, and its approach, m.
     fn place(&self, l: Meridian) -> (SiteState, f64) {
         let length = l.norm();

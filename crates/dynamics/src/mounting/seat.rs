@@ -361,6 +361,8 @@ impl RingSeat {
         let side = self.side.name();
         let clearance = -2e6 * self.interference(strain);
         if self.fit.is_some() && pressure == 0.0 && clearance >= 0.0 {
+            // An interference of 0 leaves -0.
+            let clearance = clearance.abs();
             return vec![format!(
                 "the {side} ring has a clearance of {clearance:.2} um on its seat: nothing presses it there, and it is \
                  held as if it could not move in it"
