@@ -174,7 +174,7 @@ pub fn loads(
                 sum.on_dofs.iter_mut().zip(weight).for_each(|(sum, w)| *sum += w);
             }
             ShaftKind::Rigid(rigid) => {
-                let own = (scene.shaft.load_point, rigid.mass);
+                let own = (0.0, rigid.mass);
                 let points = scene.shaft.masses.iter().map(|m| (m.position, m.mass));
                 for (position, mass) in points.chain([own]) {
                     let [x, y, z] = g.map(|a| mass * a);

@@ -20,7 +20,8 @@ pub struct ShaftLedger {
     pub spin_work: f64,
     /// Work that went into the bearings.
     pub bearing_work: f64,
-    /// Largest of all energies and works so far.
+    /// Largest of all energies and works so far, and of what the forces of the bearings would do from no displacement
+    /// on: beside that a motion that begins at rest is round-off.
     pub scale: f64,
 }
 
@@ -75,7 +76,7 @@ impl ShaftLedger {
             initial: kinetic + strain,
             ..ShaftLedger::default()
         };
-        ledger.note_scale();
+        ledger.note_scale(0.0);
         ledger
     }
 
@@ -89,22 +90,26 @@ impl ShaftLedger {
     ) -> ShaftLedger {
         let [kinetic, strain] = energies(step.shaft, end, velocity);
         let change: Vec<f64> = end.iter().zip(step.start[0]).map(|(a, b)| a - b).collect();
-        let into = |(mount, answer): (&crate::newton::Mount, &HeldAnswer)| -> f64 {
+        // Work that goes into a bearing, and the size of what its forces would do over the whole displacement.
+        let into = |(mount, answer): (&crate::newton::Mount, &HeldAnswer)| -> [f64; 2] {
             let [from, to] = [step.start[0], end].map(|q| mount.station.displacement(q));
             let moved = std::array::from_fn(|i| to[i] - from[i]);
-            let moved = mount.place.orientation.turned(moved);
-            answer.load.iter().zip(moved).map(|(f, u)| f * u).sum()
+            let [moved, whole] = [moved, to].map(|u| mount.place.orientation.turned(u));
+            let sizes = answer.load.iter().zip(whole).map(|(f, u)| (f * u).abs());
+            [work(&answer.load, &moved), sizes.sum()]
         };
+        let bearings = step.mounts.iter().zip(answers).map(into);
+        let [into_bearings, whole] = bearings.fold([0.0; 2], |[a, b], [work, size]| [a + work, b + size]);
         let by_tilt = step.load.over(step.shaft, step.interval(), [step.start[0], end]);
         let mut ledger = ShaftLedger {
             kinetic,
             strain,
             load_work: self.load_work + work(&step.load.on_dofs, &change) + work(&by_tilt, &change),
             spin_work: self.spin_work + work(&step.spin_force(end), &change),
-            bearing_work: self.bearing_work + step.mounts.iter().zip(answers).map(into).sum::<f64>(),
+            bearing_work: self.bearing_work + into_bearings,
             ..*self
         };
-        ledger.note_scale();
+        ledger.note_scale(whole);
         ledger
     }
 
@@ -118,13 +123,14 @@ impl ShaftLedger {
         self.defect() / self.scale.max(f64::MIN_POSITIVE)
     }
 
-    fn note_scale(&mut self) {
+    fn note_scale(&mut self, whole: f64) {
         let all = [
             self.kinetic,
             self.strain,
             self.load_work,
             self.spin_work,
             self.bearing_work,
+            whole,
         ];
         self.scale = all.iter().fold(self.scale, |m, x| m.max(x.abs()));
     }

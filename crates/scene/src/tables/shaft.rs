@@ -204,6 +204,11 @@ impl<const KIND: usize> RawMotion<KIND> {
         }
     }
 
+    /// Whether it changes over time.
+    pub fn has_schedule(&self) -> bool {
+        matches!(self, RawMotion::Prescribed(prescribed) if prescribed.schedule.is_some())
+    }
+
     /// Reports a prescribed motion that exceeds `limit` at the peak of its schedule.
     pub fn require_small(
         &self,

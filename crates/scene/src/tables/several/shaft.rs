@@ -3,7 +3,7 @@
 use assembly::{BeamSection, BeamShaft, PointMass};
 use dynamics::model::MAX_TILT;
 use fem::Material;
-use input::{ANGLE, Clock, FORCE, INERTIA, LENGTH, MASS, MOMENT, Problems, Quantity};
+use input::{ANGLE, FORCE, INERTIA, LENGTH, MASS, MOMENT, Problems, Quantity, Schedule};
 use serde::Deserialize;
 
 use super::super::materials::RawMaterial;
@@ -410,10 +410,14 @@ fn check_motion<const KIND: usize>(
     rule: &str,
     problems: &mut Problems,
 ) {
-    if let Some(raw) = raw {
-        let schedule = raw.schedule(key, Clock::AtRest, problems);
-        raw.require_small(limit, key, &schedule, rule, problems);
+    let Some(raw) = raw else { return };
+    if raw.has_schedule() {
+        problems.add(format!(
+            "{key}.schedule is not there for a list of bearings yet, whose shaft keeps the displacement that it is \
+             given; expected {key} without a schedule, or a scene of one bearing"
+        ));
     }
+    raw.require_small(limit, key, &Schedule::Constant, rule, problems);
 }
 
 fn check_ends(pair: &[(usize, &RawShaftSection)], length: f64, problems: &mut Problems) {

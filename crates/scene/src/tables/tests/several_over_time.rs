@@ -5,6 +5,18 @@ use super::*;
 
 const UNBALANCE: &str = "[effects.unbalance]\nmass = \"1 g\"\neccentricity = \"1 mm\"\n";
 
+/// A rigid shaft that is pushed at an instant.
+const PUSHED: &str = r#"
+[shaft]
+model = "rigid"
+mass = "1 kg"
+x = { value = "3 um", schedule.step = { at = "1 ms" } }
+y = "free"
+z = "free"
+tilt_x = "free"
+tilt_y = "free"
+"#;
+
 /// Wrong: bearings of a list in equilibria over time would be at rest, loads have no course, or an unbalance act in
 /// every bearing.
 #[test]
@@ -47,6 +59,11 @@ fn bad_lists_over_time_are_refused_with_advice() {
         (
             format!("{beam}[quasi_static]\nduration = \"1 ms\"\nstep = \"2 us\"\n"),
             "the scene has both [static] and [quasi_static]; keep exactly one analysis",
+        ),
+        (
+            moving(&list(PUSHED, ""), ""),
+            "shaft.x.schedule is not there for a list of bearings yet, whose shaft keeps the displacement that it is \
+             given; expected shaft.x without a schedule, or a scene of one bearing",
         ),
         (
             list(BEAM, UNBALANCE),
