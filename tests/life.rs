@@ -59,6 +59,13 @@ fn an_equilibrium_has_its_life() {
     }
     let found = life_file(&dir, "out");
     assert_close("C_r", number(&found, "/c_r_n"), 26587.0, 1e-4);
+    let slip = scene(&LIFE.replace("[life]", "[life]\nrating = \"27 N\""));
+    let said_of_slip = life(&slip, &["out"]);
+    let part = "life.rating is 27 N, and the dimensions give 26587 N: check its unit";
+    assert!(
+        said_of_slip.contains(part) && !said.contains("check its unit"),
+        "{said_of_slip}"
+    );
     // F_a / (Z D^2) = 1.3717: X 0.44, Y 1.1910.
     assert_close("P", number(&found, "/p_n"), 440.0 + 2.0 * 1190.95, 1e-4);
     let table = crate::util::tables::Table::read(&dir, "out/balls.csv");

@@ -17,7 +17,7 @@ fn tiny() -> Dir {
 }
 
 /// Rigid rings that turn at 1800 rpm, with an analysis and more `--set`.
-fn turning(command: &str, analysis: &str, sets: &[&str]) -> (Dir, Outcome) {
+pub fn turning(command: &str, analysis: &str, sets: &[&str]) -> (Dir, Outcome) {
     let speed = format!("[speed]\ninner = \"1800 rpm\"\n\n{analysis}");
     let dir = Dir::with_scene(&with_line("[static]", "[static]", &speed));
     let sets = sets.iter().flat_map(|set| ["--set", set]);
@@ -31,7 +31,7 @@ fn turning(command: &str, analysis: &str, sets: &[&str]) -> (Dir, Outcome) {
     (dir, outcome)
 }
 
-fn texts(dir: &Dir, key: &str) -> Vec<String> {
+pub fn texts(dir: &Dir, key: &str) -> Vec<String> {
     let list = summary(dir, "out")[key].as_array().unwrap().clone();
     list.iter()
         .map(|text| text.as_str().unwrap().to_string())

@@ -177,6 +177,33 @@ fn orders_need_a_ring_that_turns() {
     );
 }
 
+/// Wrong: lines over orders would be named where none stands, because the outer ring does not keep step.
+#[test]
+fn rings_that_do_not_keep_step_smear_orders() {
+    let both = RUN_UP
+        .replace("1200 rpm", "6000 rpm")
+        .replace("3600 rpm", "18000 rpm")
+        .replace("100 ms", "20 ms")
+        .replace("[probes.tach", "outer = \"-5000 rpm\"\n\n[probes.tach");
+    let spectrum = ["spectrum", "out", "--probe", "z_m", "--orders", "shaft"];
+    let warning = "warning: the outer ring turns -0.8";
+    let outcome = ran(&both).raceway(&spectrum);
+    assert_eq!(outcome.code, Some(0), "{}", outcome.stderr);
+    assert!(outcome.stderr.contains(warning), "{}", outcome.stderr);
+    assert!(
+        outcome.stderr.contains("so lines smear over orders too"),
+        "{}",
+        outcome.stderr
+    );
+    let in_step = both.replace(
+        "\"-5000 rpm\"",
+        "{ ramp = { from = \"-3000 rpm\", to = \"-9000 rpm\", start = \"0 ms\", duration = \"20 ms\" } }",
+    );
+    let outcome = ran(&in_step).raceway(&spectrum);
+    assert_eq!(outcome.code, Some(0), "{}", outcome.stderr);
+    assert!(!outcome.stderr.contains("smear"), "{}", outcome.stderr);
+}
+
 const STUDY: &str = r#"
 title = "spalls"
 scene = "scene.toml"

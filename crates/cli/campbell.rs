@@ -22,7 +22,7 @@ use results::whole::require_free;
 use scene::{AnyScene, Scene, build_model, doubts, model_with_rings};
 
 use crate::campbell_files::{
-    self, Diagram, MODES_OF_BEAM, cage_speed, growing, keep_modes_of_shaft, require_forward,
+    self, Diagram, MODES_OF_BEAM, ball_forces, cage_speed, growing, keep_modes_of_shaft, require_forward,
     require_one_point, without_stress,
 };
 use crate::damping::{damping_note, laws};
@@ -211,7 +211,7 @@ fn diagram(
         };
         let mut modes = modes.and_then(modes_of).map_err(at)?;
         keep_modes_of_shaft(&mut modes, number);
-        warnings.extend(growing(rpm, &modes));
+        warnings.extend(growing(rpm, &modes, &ball_forces([&solution])));
         // What is wrong at a speed is more so at the next.
         if !is_warned {
             warnings.extend(

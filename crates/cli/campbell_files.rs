@@ -6,9 +6,10 @@ use std::path::Path;
 use anyhow::anyhow;
 use comm::print;
 use contact::{BearingGeometry, Side};
-use dynamics::Model;
+use dynamics::balls::BallResult;
 use dynamics::kinematics::{RingSpeeds, SlipRatios};
 use dynamics::whirl::WhirlMode;
+use dynamics::{Model, StaticSolution};
 use results::campbell::{CAMPBELL_LINES, CAMPBELL_TABLE, ModesAtSpeed, print_campbell, write_campbell};
 use results::failure::Failure;
 use results::summary::print_warnings;
@@ -24,6 +25,10 @@ use crate::linear_figures::draw;
 /// by up to some 1e-4 (`docs/stiffness.md`). Real bearings damp by more: (0.25 to 2.5)e-5 s of their stiffness (Kramer,
 /// Dynamics of Rotors and Foundations, 1993), so by 1e-3 or more from 130 Hz on.
 pub const GROWS: f64 = -1e-3;
+
+/// Force over the largest below which the stiffness of a ball is too far from those of the others to be taken as one
+/// that changes smoothly round the bearing.
+const HARDLY_LOADED: f64 = 0.01;
 
 /// Share of shaft and bodies in the kinetic energy up to which a mode is one of balls alone, of which there are many.
 const OF_BALLS: f64 = 0.02;
@@ -63,14 +68,32 @@ pub fn require_forward(speed: Option<&RingSpeeds>, time: f64) -> Result<(), Fail
     )))
 }
 
-/// What a user should know of a mode that grows, by its number among those shown.
-pub fn growing(rpm: f64, modes: &[WhirlMode]) -> Option<String> {
+/// What a user should know of a mode that grows, by its number among those shown; `forces` are the ball forces of each
+/// bearing, N.
+pub fn growing(rpm: f64, modes: &[WhirlMode], forces: &[Vec<f64>]) -> Option<String> {
     let number = modes.iter().position(|mode| mode.damping_ratio < GROWS)?;
-    Some(format!(
+    let text = format!(
         "{rpm} rpm: mode {} grows by itself, with a damping ratio of {:.1e}",
         number + 1,
         modes[number].damping_ratio
-    ))
+    );
+    let doubt = "balls go from full load to next to none, and modes, in which their stiffness changes smoothly round \
+                 the bearing, tell that badly; a motion shows whether it does";
+    let is_doubtful = forces.iter().any(|forces| {
+        let most = forces.iter().copied().fold(0.0, f64::max);
+        forces.iter().any(|force| *force < HARDLY_LOADED * most)
+    });
+    match is_doubtful {
+        true => Some(format!("{text}; doubtful: {doubt}")),
+        false => Some(text),
+    }
+}
+
+/// The larger force of each ball of each bearing, N.
+pub fn ball_forces<'s>(bearings: impl IntoIterator<Item = &'s StaticSolution>) -> Vec<Vec<f64>> {
+    let larger = |ball: &BallResult| ball.inner.force_n.max(ball.outer.force_n);
+    let of_balls = |bearing: &StaticSolution| bearing.balls.iter().map(larger).collect();
+    bearings.into_iter().map(of_balls).collect()
 }
 
 /// What a user should know where a scene asks for the stiffness by the stress of turning rings.
@@ -161,11 +184,27 @@ mod tests {
             shaft_share: 1.0,
             standing_share: 0.0,
         };
-        assert_eq!(growing(8000.0, &[mode(-1.2e-4), mode(3e-4)]), None);
-        let told = growing(8000.0, &[mode(1e-4), mode(-2e-3), mode(-3e-3)]).unwrap();
+        let [even, uneven] = [[100.0, 80.0], [100.0, 0.3]].map(Vec::from);
+        assert_eq!(
+            growing(
+                8000.0,
+                &[mode(-1.2e-4), mode(3e-4)],
+                std::slice::from_ref(&uneven)
+            ),
+            None
+        );
+        let modes = [mode(1e-4), mode(-2e-3), mode(-3e-3)];
+        let told = growing(8000.0, &modes, std::slice::from_ref(&even)).unwrap();
         assert_eq!(
             told,
             "8000 rpm: mode 2 grows by itself, with a damping ratio of -2.0e-3"
+        );
+        let doubted = growing(8000.0, &modes, &[even, uneven]).unwrap();
+        assert!(
+            doubted.starts_with(&format!(
+                "{told}; doubtful: balls go from full load to next to none"
+            )),
+            "{doubted}"
         );
     }
 }

@@ -85,6 +85,7 @@ fn run_points(
     start: Instant,
 ) -> Result<(), Failure> {
     let all = agree(points(scene))?;
+    let scene = &with_common_assumptions(scene, &all);
     let chosen = part.map_or(0..all.len(), SweepPart::range);
     let (first, points) = (chosen.start as u64, &all[chosen]);
     let mut progress = Progress::new(points.len() as u64);
@@ -129,6 +130,14 @@ fn run_points(
     progress.finish();
     sum_up(scene, (sweep, &solver), &ended, remarks, (read, start), dir)?;
     ended
+}
+
+/// A scene that leaves open what all its points leave open alike: what a point makes of its own value is not of all.
+fn with_common_assumptions(scene: &Scene, points: &[SweptScene]) -> Scene {
+    let mut common = scene.clone();
+    let is_of_all = |line: &String| points.iter().all(|(_, point)| point.assumed.contains(line));
+    common.assumed.retain(is_of_all);
+    common
 }
 
 /// Closes the files and writes the summary of what was solved, whatever came after it; the scene was read until `read`,

@@ -15,7 +15,7 @@ use results::whole::require_free;
 use scene::{SeveralScene, assembly_with_rings, build_assembly};
 
 use crate::campbell_files::{
-    self, Diagram, MODES_OF_BEAM, cage_speeds, growing, keep_modes_of_shaft, require_forward,
+    self, Diagram, MODES_OF_BEAM, ball_forces, cage_speeds, growing, keep_modes_of_shaft, require_forward,
     require_one_point, without_stress,
 };
 use crate::damping::{damping_note, laws};
@@ -96,7 +96,7 @@ fn diagram(
         let modes = modes.map_err(solving).map_err(at)?.modes();
         let mut modes = modes.map_err(Failure::solving).map_err(at)?;
         keep_modes_of_shaft(&mut modes, number);
-        warnings.extend(growing(rpm, &modes));
+        warnings.extend(growing(rpm, &modes, &ball_forces(&solution.bearings)));
         if !is_warned {
             let found = warnings_at(&format!("from {rpm} rpm on: "), &assembly, &solution);
             is_warned = !found.is_empty();

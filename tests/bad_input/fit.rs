@@ -18,7 +18,7 @@ fn a_wrong_mesh_unit_is_refused_with_the_right_one() {
         );
         let parts = [
             "error: inner.msh: with a mesh unit of",
-            "m in outside diameter, expected 5.6010e-2 m; the file's lengths seem to be in mm: state a mesh unit \
+            "m across, expected about 5.6010e-2 m; the file's lengths seem to be in mm: state a mesh unit \
              of \"mm\"",
         ];
         assert_refused(unit, &dir, &[], &run(&[]), &parts);

@@ -204,7 +204,8 @@ pub enum SurroundingError {
     },
     /// The nodes of a seat do not tell the functions apart.
     #[error(
-        "{what} has {nodes} nodes, too few or too uneven for {functions} functions of the seat; {advice}, \
+        "{what} has {nodes} nodes, too few or too uneven for {functions} functions of the seat in each \
+         direction (waves up to order N need more than 2 N nodes round it); {advice}, \
          or fewer harmonics or across"
     )]
     TooFewNodes {

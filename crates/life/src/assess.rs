@@ -18,6 +18,9 @@ const LIFE_EXPONENT: f64 = 3.0;
 /// Contact angle that no clearance of a deep groove bearing makes, deg.
 const LARGEST_OF_CLEARANCE: f64 = 20.0;
 
+/// Rating of a catalogue over that of the dimensions beyond which it is a slip of the unit.
+const PLAUSIBLE_RATING: std::ops::RangeInclusive<f64> = 0.2..=5.0;
+
 /// What a scene says of its bearing's life.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Rated {
@@ -57,6 +60,20 @@ impl Rated {
     /// Where the ratings come from, a sentence each.
     fn notes(&self) -> Vec<String> {
         let mut notes = Vec::new();
+        let ratings = [
+            ("rating", self.life.rating, self.bearing.dynamic_rating()),
+            (
+                "static_rating",
+                self.life.static_rating,
+                self.bearing.static_rating(),
+            ),
+        ];
+        for (key, given, own) in ratings {
+            let odd = given.filter(|given| !PLAUSIBLE_RATING.contains(&(given / own)));
+            notes.extend(odd.map(|given| {
+                format!("life.{key} is {given} N, and the dimensions give {own:.0} N: check its unit")
+            }));
+        }
         if self.life.contact_angle.is_none() {
             let angle = self.bearing.contact_angle.to_degrees();
             // Clearance alone makes no larger angle.

@@ -324,7 +324,7 @@ pub enum MeshError {
     },
     /// The unit of the mesh is evidently another one.
     #[error(
-        "{path}: with a mesh unit of {unit} m the ring is {measured:.4e} m in outside diameter, expected \
+        "{path}: with a mesh unit of {unit} m the ring is {measured:.4e} m across, expected about \
          {expected:.4e} m; {advice}"
     )]
     WrongUnit {

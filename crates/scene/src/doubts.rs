@@ -11,6 +11,7 @@ use body::Surrounding;
 use contact::Side;
 use contact::surface::felt::felt;
 use dynamics::kinematics::BallSpeeds;
+use dynamics::mounting::RingTemperature;
 use dynamics::{Model, RingModel};
 use input::{DENSITY, LENGTH, Quantity, STRESS};
 
@@ -19,12 +20,14 @@ use crate::coarse_round::reaches_next_ball;
 use crate::resolution::unresolved;
 use crate::section_record::unrecorded;
 use crate::surfaces::track_radius;
-use crate::tables::{MaterialProperties, Scene, unusual_stiffnesses};
+use crate::tables::{BodySource, Lubrication, MaterialProperties, Scene, unusual_stiffnesses};
 
 /// Young's modulus of what rings and balls are made of, Pa: from soft plastics to diamond.
 const MODULI: RangeInclusive<f64> = 4e8..=1.3e12;
 /// Their density, kg/m3: from foamed plastics to tungsten.
 const DENSITIES: RangeInclusive<f64> = 500.0..=25_000.0;
+/// Dynamic viscosity of oils in bearings, Pa s.
+const VISCOSITIES: RangeInclusive<f64> = 1e-3..=5.0;
 /// Relative difference of a diameter, and of a width, from which a mesh is said to have another.
 const OTHER_DIAMETER: f64 = 2e-3;
 const OTHER_WIDTH: f64 = 2e-2;
@@ -48,6 +51,9 @@ pub fn doubts(scene: &Scene, model: &Model) -> Vec<String> {
     let mut lines = Vec::new();
     doubt_material("materials.rings", &materials.rings, &mut lines);
     doubt_material("materials.balls", &materials.balls, &mut lines);
+    doubt_bodies(scene, &mut lines);
+    doubt_partners(scene, &mut lines);
+    doubt_lubricant(scene, &mut lines);
     for (side, table) in Side::BOTH.into_iter().zip([&scene.inner, &scene.outer]) {
         if let (Some(ring), Some(body)) = (&model.rings[side.index()], &table.body) {
             let path = body.mesh.display().to_string();
@@ -130,18 +136,87 @@ fn say_parts(ring: &RingModel, path: &str, lines: &mut Vec<String>) {
 }
 
 fn doubt_material(table: &str, material: &MaterialProperties, lines: &mut Vec<String>) {
-    if !MODULI.contains(&material.young_modulus) {
+    doubt_modulus(table, "rings and balls", material.young_modulus, lines);
+    doubt_density(table, "rings and balls", material.density, lines);
+}
+
+fn doubt_modulus(table: &str, of: &str, modulus: f64, lines: &mut Vec<String>) {
+    if !MODULI.contains(&modulus) {
         lines.push(format!(
-            "{table}.young_modulus is {}; rings and balls have 0.4 GPa (plastics) to 1300 GPa (diamond), steel 207 \
-             GPa: check its unit",
-            Quantity::<STRESS>::about(material.young_modulus)
+            "{table}.young_modulus is {}; {of} have 0.4 GPa (plastics) to 1300 GPa (diamond), steel 207 GPa: check \
+             its unit",
+            Quantity::<STRESS>::about(modulus)
         ));
     }
-    if !DENSITIES.contains(&material.density) {
+}
+
+fn doubt_density(table: &str, of: &str, density: f64, lines: &mut Vec<String>) {
+    if !DENSITIES.contains(&density) {
         lines.push(format!(
-            "{table}.density is {}; rings and balls have 500 kg/m3 (plastics) to 25000 kg/m3 (heavy metals), steel \
-             7800 kg/m3: check its unit",
-            Quantity::<DENSITY>::about(material.density)
+            "{table}.density is {}; {of} have 500 kg/m3 (plastics) to 25000 kg/m3 (heavy metals), steel 7800 kg/m3: \
+             check its unit",
+            Quantity::<DENSITY>::about(density)
+        ));
+    }
+}
+
+/// What shafts and housings are made of that have a mesh.
+fn doubt_bodies(scene: &Scene, lines: &mut Vec<String>) {
+    for body in scene.bodies.iter().flatten() {
+        if let BodySource::Mesh { material, .. } = &body.source {
+            let table = format!("[[body]] \"{}\": material", body.name);
+            doubt_modulus(&table, "shafts and housings", material.young_modulus, lines);
+            doubt_density(&table, "shafts and housings", material.density, lines);
+        }
+    }
+}
+
+/// What the tubes of fits are made of, and whether temperatures over the radius are those of the ring.
+fn doubt_partners(scene: &Scene, lines: &mut Vec<String>) {
+    let conditions = scene.effects.conditions();
+    for side in Side::BOTH {
+        let (name, bearing) = (side.name(), &scene.bearing);
+        if let Some(fit) = &conditions.fits[side.index()] {
+            let (table, of) = (format!("effects.fit.{name}"), "shafts and housings");
+            fit.young_modulus
+                .iter()
+                .for_each(|modulus| doubt_modulus(&table, of, *modulus, lines));
+            fit.density
+                .iter()
+                .for_each(|density| doubt_density(&table, of, *density, lines));
+        }
+        let temperatures = conditions.temperatures.as_ref();
+        let Some(RingTemperature::Radial(profile)) = temperatures.map(|t| &t.rings[side.index()]) else {
+            continue;
+        };
+        let [from, to] = [
+            [bearing.bore_diameter, bearing.outer_raceway_diameter],
+            [bearing.inner_raceway_diameter, bearing.outside_diameter],
+        ][side.index()]
+        .map(|diameter| 0.5 * diameter);
+        let [first, last] = [profile.radii[0], profile.radii[profile.radii.len() - 1]];
+        if last < from || to < first {
+            lines.push(format!(
+                "effects.temperature.{name}.radii reach from {:.1} to {:.1} mm, and the ring lies between radii of \
+                 {:.1} and {:.1} mm: all of it has one temperature; check that they are radii, in their unit",
+                1e3 * first,
+                1e3 * last,
+                1e3 * from,
+                1e3 * to
+            ));
+        }
+    }
+}
+
+/// The oil of films and that of the life.
+fn doubt_lubricant(scene: &Scene, lines: &mut Vec<String>) {
+    if let Some(Lubrication { lubricant, .. }) = &scene.lubricant
+        && !VISCOSITIES.contains(&lubricant.viscosity)
+    {
+        lines.push(format!(
+            "the dynamic viscosity of the lubricant is {:.3e} Pa s; oils in bearings have 1 mPa s (hot spindle oil) to \
+             5 Pa s (cold gear oil): check its unit",
+            lubricant.viscosity
         ));
     }
 }

@@ -24,7 +24,7 @@ use results::whole::{make_folder, output_folder, require_own_picture, write, wri
 use scene::{Analysis, MeshFiles, Scene};
 
 use fourier::LineSpectrum;
-use lines::{Line, lines, smear};
+use lines::{Line, lines, smear, smear_of_orders};
 use picture::{Abscissa, FREQUENCY, Titled, draw};
 use signal::Signal;
 
@@ -108,9 +108,12 @@ pub fn spectrum(request: &SpectrumCommand) -> Result<(), Failure> {
     let signal = request.signal()?;
     let mut marks = lines(dir, &scene, signal.span)?;
     let named = request.transform(&signal)?;
-    if request.orders.is_none()
-        && let Some(text) = smear(&scene, signal.span, &marks, named.spectrum.resolution)
-    {
+    let resolution = named.spectrum.resolution;
+    let smeared = match request.orders {
+        None => smear(&scene, signal.span, &marks, resolution),
+        Some(_) => smear_of_orders(&scene, signal.span, resolution),
+    };
+    if let Some(text) = smeared {
         print::note(format_args!("warning: {text}"));
     }
     marks.iter_mut().for_each(|line| {

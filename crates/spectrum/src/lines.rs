@@ -136,6 +136,31 @@ pub fn smear(scene: &Scene, (from, to): (f64, f64), marks: &[Line], resolution: 
     })
 }
 
+/// The same of a spectrum over orders with this resolution: there the rings smear the lines of passing balls, Z/2 times
+/// the change of the ratio of their speeds, unless they keep step.
+pub fn smear_of_orders(scene: &Scene, (from, to): (f64, f64), resolution: f64) -> Option<String> {
+    let step = (to - from) / f64::from(LOOKS);
+    let speeds = scene.speed.as_ref()?;
+    let turned = |i: u32| {
+        let angle = |side: Side, i: u32| speeds.of(side).angle(from + f64::from(i) * step);
+        Side::BOTH.map(|side| angle(side, i + 1) - angle(side, i))
+    };
+    let [low, high] = (0..LOOKS)
+        .map(turned)
+        .map(|[inner, outer]| outer / inner)
+        .filter(|ratio| ratio.is_finite())
+        .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| {
+            [low.min(x), high.max(x)]
+        });
+    let width = 0.5 * scene.bearing.balls as f64 * (high - low);
+    (width > 2.0 * resolution).then(|| {
+        format!(
+            "the outer ring turns {low:.3} to {high:.3} times as fast as the inner ring in this time, so lines smear \
+             over orders too, and those named are of the mean speeds; take a part of the run by --from and --to"
+        )
+    })
+}
+
 /// The lines of a bearing whose rings, cage and balls turn at these speeds, Hz.
 fn lines_of(scene: &Scene, (inner, outer): (f64, f64), cage: f64, spin: f64) -> [Line; 5] {
     let n = scene.bearing.balls as f64;

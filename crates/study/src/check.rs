@@ -8,6 +8,7 @@ use results::about::tidy;
 
 use super::format::{OneOrMany, RawAxis, RawQuantity, RawReference, RawSignals, RawStudy, Take};
 use super::plan::{AxisValue, Plan, Reference, Signals, Source, StudyAxis, StudyQuantity, grid};
+use super::unit;
 
 /// Runs of a point beyond this are a slip.
 const MAX_REPEATS: i64 = 100;
@@ -249,6 +250,7 @@ fn quantity(raw: RawQuantity, axes: &[StudyAxis]) -> anyhow::Result<StudyQuantit
     if let (Some(Reference::Value { value: 0.0, .. }), None) = (&reference, raw.scale) {
         bail!("the reference is 0, so a relative error needs a scale");
     }
+    unit::check(&raw.unit, &source)?;
     Ok(StudyQuantity {
         name: raw.name,
         unit: raw.unit,

@@ -28,6 +28,7 @@ mod richardson;
 mod runner;
 mod signals;
 mod table;
+mod unit;
 
 use std::path::{Path, PathBuf};
 
