@@ -117,7 +117,7 @@ pub fn loaded(forces: impl Iterator<Item = f64> + Clone) -> Vec<bool> {
     forces.map(|force| force > limit).collect()
 }
 
-/// Which contacts carry more than a slight load, over the largest on their raceway: in sites, inner and outer take turns.
+/// Which contacts carry more than a slight load, over the largest on their raceway; inner and outer sites take turns.
 pub fn well_loaded(forces: impl Iterator<Item = f64> + Clone) -> Vec<bool> {
     let largest = |side| forces.clone().skip(side).step_by(2).fold(0.0, f64::max);
     let limits = [0, 1].map(|side| SLIGHT_SHARE * largest(side));
