@@ -22,7 +22,7 @@ use ring::RingModel;
 /// Groove angle kept from the rim by a contact that is not on the groove, as a share of the groove.
 const RIM_SHARE: f64 = 0.05;
 /// Force over the largest below which a contact is unloaded: what Newton leaves on balls that touch without load.
-pub const LOADED_SHARE: f64 = 1e-9;
+const LOADED_SHARE: f64 = 1e-9;
 /// Force over the largest on the same raceway below which a contact may stand beyond the rim of a flexible ring's
 /// groove, and acts on the ring just inside it: a ball that lies between the shoulders by its own weight, or that its
 /// centrifugal force presses on the other raceway, changes next to nothing.
@@ -111,9 +111,14 @@ fn place_patch(
     })
 }
 
+/// Force up to which a contact is unloaded, from the sizes of all forces, N.
+pub fn least_load(forces: impl Iterator<Item = f64>) -> f64 {
+    LOADED_SHARE * forces.fold(0.0, f64::max)
+}
+
 /// Which contacts carry load, by site, from the sizes of their forces, N.
 pub fn loaded(forces: impl Iterator<Item = f64> + Clone) -> Vec<bool> {
-    let limit = LOADED_SHARE * forces.clone().fold(0.0, f64::max);
+    let limit = least_load(forces.clone());
     forces.map(|force| force > limit).collect()
 }
 

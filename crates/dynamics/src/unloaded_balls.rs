@@ -4,7 +4,7 @@ use contact::{BySide, Meridian, Side};
 
 use crate::bearing::BearingParts;
 use crate::displacements::Displacements;
-use crate::footprint::{LOADED_SHARE, loaded, sizes};
+use crate::footprint::{least_load, sizes};
 use crate::interactions::raceway_contact::{Site, on_rings};
 
 /// Unloaded balls rest midway between their raceways: those without a load of their own that are not squeezed between
@@ -18,20 +18,22 @@ pub fn centre_unloaded(parts: &BearingParts, u: &mut Displacements) {
     let weightless = 4.0 * f64::EPSILON * loads.iter().copied().fold(0.0, f64::max);
     let states = parts.states_at(u);
     let forces = on_rings(&states);
-    let largest = sizes(&forces).fold(0.0, f64::max);
-    let loaded = loaded(sizes(&forces));
+    let least = least_load(sizes(&forces));
     let found = u.balls.clone();
     let pairs = parts.contacts.sites.chunks_exact(2).zip(states.chunks_exact(2));
-    for ((pair, states), loaded) in pairs.zip(loaded.chunks_exact(2)) {
+    for ((pair, states), forces) in pairs.zip(forces.chunks_exact(2)) {
         let ball = pair[0].ball;
-        if loaded == [true, true] || loads[ball] > weightless {
+        if forces.iter().all(|force| force.norm() > least) || loads[ball] > weightless {
             continue;
         }
         u.balls[ball] = u.balls[ball] + to_middle(pair, [states[0].reach(), states[1].reach()]);
     }
+    if u.balls == found {
+        return;
+    }
     let there = on_rings(&parts.states_at(u));
     for (site, force) in parts.contacts.sites.iter().zip(&there) {
-        if u.balls[site.ball] != found[site.ball] && force.norm() > LOADED_SHARE * largest {
+        if u.balls[site.ball] != found[site.ball] && force.norm() > least {
             u.balls[site.ball] = found[site.ball];
         }
     }

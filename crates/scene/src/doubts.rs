@@ -26,6 +26,8 @@ use crate::tables::{BodySource, Lubrication, MaterialProperties, Scene, unusual_
 const MODULI: RangeInclusive<f64> = 4e8..=1.3e12;
 /// Their density, kg/m3: from foamed plastics to tungsten.
 const DENSITIES: RangeInclusive<f64> = 500.0..=25_000.0;
+/// What rings sit on and in.
+const PARTNERS: &str = "shafts and housings";
 /// Dynamic viscosity of oils in bearings, Pa s.
 const VISCOSITIES: RangeInclusive<f64> = 1e-3..=5.0;
 /// Relative difference of a diameter, and of a width, from which a mesh is said to have another.
@@ -49,8 +51,8 @@ const OUTER_CONTROL: &str = "speed.ball_speeds = \"outer_control\" assumes that 
 pub fn doubts(scene: &Scene, model: &Model) -> Vec<String> {
     let materials = &scene.materials;
     let mut lines = Vec::new();
-    doubt_material("materials.rings", &materials.rings, &mut lines);
-    doubt_material("materials.balls", &materials.balls, &mut lines);
+    doubt_material("materials.rings", "rings and balls", &materials.rings, &mut lines);
+    doubt_material("materials.balls", "rings and balls", &materials.balls, &mut lines);
     doubt_bodies(scene, &mut lines);
     doubt_partners(scene, &mut lines);
     doubt_lubricant(scene, &mut lines);
@@ -135,9 +137,9 @@ fn say_parts(ring: &RingModel, path: &str, lines: &mut Vec<String>) {
     }
 }
 
-fn doubt_material(table: &str, material: &MaterialProperties, lines: &mut Vec<String>) {
-    doubt_modulus(table, "rings and balls", material.young_modulus, lines);
-    doubt_density(table, "rings and balls", material.density, lines);
+fn doubt_material(table: &str, of: &str, material: &MaterialProperties, lines: &mut Vec<String>) {
+    doubt_modulus(table, of, material.young_modulus, lines);
+    doubt_density(table, of, material.density, lines);
 }
 
 fn doubt_modulus(table: &str, of: &str, modulus: f64, lines: &mut Vec<String>) {
@@ -165,8 +167,7 @@ fn doubt_bodies(scene: &Scene, lines: &mut Vec<String>) {
     for body in scene.bodies.iter().flatten() {
         if let BodySource::Mesh { material, .. } = &body.source {
             let table = format!("[[body]] \"{}\": material", body.name);
-            doubt_modulus(&table, "shafts and housings", material.young_modulus, lines);
-            doubt_density(&table, "shafts and housings", material.density, lines);
+            doubt_material(&table, PARTNERS, material, lines);
         }
     }
 }
@@ -177,13 +178,13 @@ fn doubt_partners(scene: &Scene, lines: &mut Vec<String>) {
     for side in Side::BOTH {
         let (name, bearing) = (side.name(), &scene.bearing);
         if let Some(fit) = &conditions.fits[side.index()] {
-            let (table, of) = (format!("effects.fit.{name}"), "shafts and housings");
-            fit.young_modulus
-                .iter()
-                .for_each(|modulus| doubt_modulus(&table, of, *modulus, lines));
-            fit.density
-                .iter()
-                .for_each(|density| doubt_density(&table, of, *density, lines));
+            let table = format!("effects.fit.{name}");
+            if let Some(modulus) = fit.young_modulus {
+                doubt_modulus(&table, PARTNERS, modulus, lines);
+            }
+            if let Some(density) = fit.density {
+                doubt_density(&table, PARTNERS, density, lines);
+            }
         }
         let temperatures = conditions.temperatures.as_ref();
         let Some(RingTemperature::Radial(profile)) = temperatures.map(|t| &t.rings[side.index()]) else {
@@ -208,7 +209,7 @@ fn doubt_partners(scene: &Scene, lines: &mut Vec<String>) {
     }
 }
 
-/// The oil of films and that of the life.
+/// The oil of films.
 fn doubt_lubricant(scene: &Scene, lines: &mut Vec<String>) {
     if let Some(Lubrication { lubricant, .. }) = &scene.lubricant
         && !VISCOSITIES.contains(&lubricant.viscosity)

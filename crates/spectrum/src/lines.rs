@@ -117,12 +117,8 @@ pub fn smear(scene: &Scene, (from, to): (f64, f64), marks: &[Line], resolution: 
     let step = (to - from) / f64::from(LOOKS);
     Side::BOTH.into_iter().find_map(|side| {
         let speed = scene.speed.as_ref()?.of(side);
-        let angle = |i: u32| speed.angle(from + f64::from(i) * step);
-        let speeds = (0..LOOKS).map(|i| (angle(i + 1) - angle(i)) / (TAU * step));
-        let [low, high] = speeds.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| {
-            [low.min(x), high.max(x)]
-        });
-        let mean = (angle(LOOKS) - angle(0)) / (TAU * (to - from));
+        let (low, high) = extremes(turns(|t| speed.angle(t), (from, to)).map(|turned| turned / (TAU * step)));
+        let mean = (speed.angle(from + f64::from(LOOKS) * step) - speed.angle(from)) / (TAU * (to - from));
         let width = highest * (high - low) / mean.abs().max(f64::MIN_POSITIVE);
         (width > 2.0 * resolution).then(|| {
             format!(
@@ -136,22 +132,25 @@ pub fn smear(scene: &Scene, (from, to): (f64, f64), marks: &[Line], resolution: 
     })
 }
 
+/// Angles that a ring turns between looks from `from` to `to`, s, in rad; `angle` is its angle at a time.
+fn turns(angle: impl Fn(f64) -> f64, (from, to): (f64, f64)) -> impl Iterator<Item = f64> {
+    let step = (to - from) / f64::from(LOOKS);
+    let angle = move |i: u32| angle(from + f64::from(i) * step);
+    (0..LOOKS).map(move |i| angle(i + 1) - angle(i))
+}
+
+fn extremes(values: impl Iterator<Item = f64>) -> (f64, f64) {
+    let none = (f64::INFINITY, f64::NEG_INFINITY);
+    values.fold(none, |(low, high), x| (low.min(x), high.max(x)))
+}
+
 /// The same of a spectrum over orders with this resolution: there the rings smear the lines of passing balls, Z/2 times
 /// the change of the ratio of their speeds, unless they keep step.
-pub fn smear_of_orders(scene: &Scene, (from, to): (f64, f64), resolution: f64) -> Option<String> {
-    let step = (to - from) / f64::from(LOOKS);
+pub fn smear_of_orders(scene: &Scene, span: (f64, f64), resolution: f64) -> Option<String> {
     let speeds = scene.speed.as_ref()?;
-    let turned = |i: u32| {
-        let angle = |side: Side, i: u32| speeds.of(side).angle(from + f64::from(i) * step);
-        Side::BOTH.map(|side| angle(side, i + 1) - angle(side, i))
-    };
-    let [low, high] = (0..LOOKS)
-        .map(turned)
-        .map(|[inner, outer]| outer / inner)
-        .filter(|ratio| ratio.is_finite())
-        .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| {
-            [low.min(x), high.max(x)]
-        });
+    let [inner, outer] = Side::BOTH.map(|side| turns(move |t| speeds.of(side).angle(t), span));
+    let ratios = outer.zip(inner).map(|(outer, inner)| outer / inner);
+    let (low, high) = extremes(ratios.filter(|ratio| ratio.is_finite()));
     let width = 0.5 * scene.bearing.balls as f64 * (high - low);
     (width > 2.0 * resolution).then(|| {
         format!(

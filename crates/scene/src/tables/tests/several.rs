@@ -103,7 +103,7 @@ to = "100 mm"
 outside = "45 mm"
 "#;
 
-const RIGID: &str = r#"
+pub(super) const RIGID: &str = r#"
 [shaft]
 model = "rigid"
 x = "free"

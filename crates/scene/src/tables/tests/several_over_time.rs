@@ -1,21 +1,9 @@
 //! Lists of bearings in equilibria over time, and their unbalance.
 
-use super::several::{BEAM, Lists, list, moving};
+use super::several::{BEAM, Lists, RIGID, list, moving};
 use super::*;
 
 const UNBALANCE: &str = "[effects.unbalance]\nmass = \"1 g\"\neccentricity = \"1 mm\"\n";
-
-/// A rigid shaft that is pushed at an instant.
-const PUSHED: &str = r#"
-[shaft]
-model = "rigid"
-mass = "1 kg"
-x = { value = "3 um", schedule.step = { at = "1 ms" } }
-y = "free"
-z = "free"
-tilt_x = "free"
-tilt_y = "free"
-"#;
 
 /// Wrong: bearings of a list in equilibria over time would be at rest, loads have no course, or an unbalance act in
 /// every bearing.
@@ -48,6 +36,10 @@ fn a_list_in_equilibria_over_time_has_that_in_every_bearing() {
 fn bad_lists_over_time_are_refused_with_advice() {
     let lists = Lists::new("bad_over_time");
     let beam = list(BEAM, "");
+    let pushed = RIGID.replace(
+        "x = \"free\"\ny",
+        "x = { value = \"3 um\", schedule.step = { at = \"1 ms\" } }\ny",
+    );
     let cases: Vec<(String, &str)> = vec![
         (
             beam.replace(
@@ -61,7 +53,7 @@ fn bad_lists_over_time_are_refused_with_advice() {
             "the scene has both [static] and [quasi_static]; keep exactly one analysis",
         ),
         (
-            moving(&list(PUSHED, ""), ""),
+            moving(&list(&pushed, ""), ""),
             "shaft.x.schedule is not there for a list of bearings yet, whose shaft keeps the displacement that it is \
              given; expected shaft.x without a schedule, or a scene of one bearing",
         ),
