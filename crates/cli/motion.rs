@@ -1,5 +1,6 @@
 //! `raceway run` of a `[dynamic]` scene: static start, then steps in time with histories, step files and the ledger.
 
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::time::Instant;
@@ -316,15 +317,24 @@ impl OverInstants for March<'_> {
     }
 
     fn reduce(&mut self) -> Result<(), Failure> {
-        let (model, motion, state) = (self.model, self.motion, &self.state);
+        let (model, motion) = (self.model, self.motion);
+        if !self.files.reduces(self.state.step, motion.time(self.state.step)) {
+            return Ok(());
+        }
+        let state = &*motion.gathered(&self.state);
         let shown = Shown::Motion { model, motion, state };
         self.files
             .reduce(state.step, motion.time(state.step), &shown, self.scene)
     }
 
+    /// What is collective comes before what rank 0 alone may fail in.
     fn append_rows(&mut self) -> Result<(), Failure> {
-        let (model, motion, state) = (self.model, self.motion, &self.state);
-        let time = motion.time(state.step);
+        let (model, motion) = (self.model, self.motion);
+        let state = match self.scene.probes.is_empty() {
+            true => Cow::Borrowed(&self.state),
+            false => motion.gathered(&self.state),
+        };
+        let (state, time) = (&*state, motion.time(self.state.step));
         let snapshot = Snapshot::of_motion(motion, state);
         self.files.write_tables(state.step, time, None, &snapshot)?;
         let shown = Shown::Motion { model, motion, state };
@@ -332,13 +342,18 @@ impl OverInstants for March<'_> {
     }
 
     fn append_profiles(&mut self) -> Result<(), Failure> {
-        let (model, motion, state) = (self.model, self.motion, &self.state);
+        if self.scene.probes.is_empty() {
+            return Ok(());
+        }
+        let (model, motion) = (self.model, self.motion);
+        let state = &*motion.gathered(&self.state);
         let (shown, time) = (Shown::Motion { model, motion, state }, motion.time(state.step));
         self.files.write_profiles(state.step, time, None, &shown)
     }
 
     fn append_files(&mut self, restart: RestartState) -> Result<(), Failure> {
-        let (model, motion, state) = (self.model, self.motion, &self.state);
+        let (model, motion) = (self.model, self.motion);
+        let state = &*motion.gathered(&self.state);
         let shown = Shown::Motion { model, motion, state };
         let kept = self.kept();
         let gathered = self.files.gather_stress(&shown, kept);

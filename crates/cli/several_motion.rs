@@ -360,9 +360,11 @@ impl OverInstants for ListMarch<'_> {
         let of_shaft = several_state::arrays_of_shaft(&self.state, self.newton);
         let every = self.placed[0].output.every;
         let kept = every.kept(self.state.step, self.dynamic.output_every, self.dynamic.n_steps);
+        let bearings = self.motion.bearings.iter().zip(&self.state.bearings);
+        let states: Vec<_> = bearings.map(|(motion, state)| motion.gathered(state)).collect();
         let mut gathered = Vec::new();
         for (i, files) in self.files.iter_mut().enumerate() {
-            let (motion, state) = (&self.motion.bearings[i], &self.state.bearings[i]);
+            let (motion, state) = (&self.motion.bearings[i], &*states[i]);
             let model = &self.assembly.bearings[i].model;
             gathered.push(files.gather_stress(&Shown::Motion { model, motion, state }, kept));
         }
@@ -370,7 +372,7 @@ impl OverInstants for ListMarch<'_> {
             if !files.are_written_here() {
                 continue;
             }
-            let (motion, state) = (&self.motion.bearings[i], &self.state.bearings[i]);
+            let (motion, state) = (&self.motion.bearings[i], &*states[i]);
             let model = &self.assembly.bearings[i].model;
             let shown = Recorded::new(model, motion, state, gathered, (&self.placed[i], kept), restart)?;
             let (of_shaft, watch) = (of_shaft.clone(), self.watches[i].clone());
@@ -391,6 +393,10 @@ impl OverInstants for ListMarch<'_> {
         let mut reduced = Ok(());
         for (i, files) in self.files.iter_mut().enumerate() {
             let (motion, state) = (&self.motion.bearings[i], &self.state.bearings[i]);
+            if !files.reduces(state.step, motion.time(state.step)) {
+                continue;
+            }
+            let state = &*motion.gathered(state);
             let model = &self.assembly.bearings[i].model;
             let shown = Shown::Motion { model, motion, state };
             let own = files.reduce(state.step, motion.time(state.step), &shown, &self.placed[i]);

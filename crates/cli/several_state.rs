@@ -99,7 +99,7 @@ pub fn restore(
         }
         let watch = Watch::take(&mut arrays, motion.n_balls());
         watches.push(watch.ok_or_else(|| anyhow!("{} has no count of contacts beyond their limits", at()))?);
-        states.push(state_arrays::load(&arrays, &motion.shape()).with_context(at)?);
+        states.push(motion.own(state_arrays::load(&arrays, &motion.shape()).with_context(at)?));
     }
     let missing = || anyhow!("step {step} of {} has no state of the shaft", dir.display());
     let shaft = shaft.ok_or_else(missing)?;

@@ -236,7 +236,7 @@ impl Stored {
         };
         let watch = Watch::take(&mut arrays, motion.n_balls());
         let watch = watch.ok_or_else(|| anyhow!("{} has no count of contacts beyond their limits", at()))?;
-        let state = state_arrays::load(&arrays, &motion.shape()).with_context(at)?;
+        let state = motion.own(state_arrays::load(&arrays, &motion.shape()).with_context(at)?);
         let time = motion.time(state.step);
         if state.step != self.step || time.to_bits() != self.time.to_bits() {
             return Err(anyhow!(

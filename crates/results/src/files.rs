@@ -312,6 +312,12 @@ impl Files {
         Ok(())
     }
 
+    /// Whether a step counts in what is found of the whole run.
+    pub fn reduces(&self, step: u64, time: f64) -> bool {
+        let reduced = self.reduced.as_ref();
+        reduced.is_some_and(|reduced| reduced.counts(step, time))
+    }
+
     /// Takes a step into account in what is found of the whole run, if the scene asks for that and the step counts.
     /// Collective; rank 0 alone may fail.
     pub fn reduce(&mut self, step: u64, time: f64, shown: &Shown<'_>, scene: &Scene) -> Result<(), Failure> {

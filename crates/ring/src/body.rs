@@ -6,7 +6,8 @@
 //! the same functionals. A clamped seat has none: its nodes are held.
 //!
 //! **Vectors.** Displacements, velocities, loads of a body are vectors of its own kind: coordinates, or harmonics of
-//! a periodic ring. Only the body knows which.
+//! a periodic ring. Only the body knows which. Of harmonics that ranks share, each rank has its own; rank 0 gets all of
+//! a vector where results ask for it ([`ElasticBody::to_root`]).
 
 use std::sync::Arc;
 
@@ -98,7 +99,7 @@ pub struct HeldRing {
 /// Vectors of a body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RingShape {
-    /// Length of each.
+    /// Length of each, of all ranks together.
     pub length: usize,
     /// What they are: `coordinates` or `harmonics`.
     pub kind: &'static str,
@@ -132,16 +133,36 @@ pub trait ElasticBody: Send + Sync {
     /// The same of a state of the ring: rows that only a regular ring has move as its statics has them.
     fn state_of_coordinates(&self, y: Vec<f64>) -> Vec<f64>;
 
-    /// Coordinates of a vector.
+    /// Coordinates of a vector. Collective.
     fn coordinates(&self, x: &[f64]) -> Vec<f64>;
 
-    /// Nodal values, `[n_nodes][3]` flat, of a vector.
+    /// Nodal values, `[n_nodes][3]` flat, of a vector. Collective.
     fn nodal(&self, x: &[f64]) -> Vec<f64> {
         self.held().coordinates.expand(&self.coordinates(x))
     }
 
+    /// Whether each rank has a part of a vector only.
+    fn is_divided(&self) -> bool {
+        false
+    }
+
+    /// All of a vector, on rank 0 and where each rank has all of it; None elsewhere. Collective.
+    fn to_root(&self, x: &[f64]) -> Option<Vec<f64>> {
+        Some(x.to_vec())
+    }
+
+    /// The vector of this rank that is all of a vector on all ranks together.
+    fn own(&self, whole: Vec<f64>) -> Vec<f64> {
+        whole
+    }
+
+    /// Nodal values, `[n_nodes][3]` flat, of all of a vector; by this rank alone.
+    fn nodal_of_whole(&self, whole: &[f64]) -> Vec<f64> {
+        self.nodal(whole)
+    }
+
     /// The same at the chosen nodes, to the bit; others may be NaN.
-    fn nodal_at(&self, x: &[f64], nodes: &[usize]) -> Vec<f64>;
+    fn nodal_at(&self, whole: &[f64], nodes: &[usize]) -> Vec<f64>;
 
     /// a A b of a matrix A; 0 with that of the stress where it does not stiffen the ring.
     fn form(&self, matrix: Matrix, a: &[f64], b: &[f64]) -> f64;
@@ -238,6 +259,16 @@ impl dyn ElasticBody + '_ {
     /// Number of generalised coordinates.
     pub fn n(&self) -> usize {
         self.held().coordinates.n()
+    }
+
+    /// A state of which rank 0 has all, where ranks have parts of vectors; others keep theirs. Collective.
+    pub fn state_to_root(&self, state: RingState) -> RingState {
+        state.with_vectors(|x| self.to_root(&x).unwrap_or(x))
+    }
+
+    /// This rank's part of a state of which each rank has all.
+    pub fn own_state(&self, whole: RingState) -> RingState {
+        whole.with_vectors(|x| self.own(x))
     }
 
     /// The vector of a nodal load, `[n_nodes][3]` flat.

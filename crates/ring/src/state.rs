@@ -104,6 +104,13 @@ impl RingState {
         }
     }
 
+    /// The state with what `of` makes of its vectors, and the same body.
+    pub(crate) fn with_vectors(mut self, of: impl Fn(Vec<f64>) -> Vec<f64>) -> RingState {
+        let body = self.take_body();
+        let [w, v, a] = self.into_parts().map(of);
+        RingState::new(w, v, a).with_body(body)
+    }
+
     /// Displacement, velocity, acceleration of the ring.
     pub fn into_parts(self) -> [Vec<f64>; 3] {
         [self.w, self.v, self.a].map(PooledVector::into_vec)

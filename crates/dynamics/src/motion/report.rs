@@ -1,12 +1,14 @@
 //! What is reported of a state: shaft, balls, ring displacements.
 
+use std::borrow::Cow;
+
 use body::BodyLoad;
 use contact::patch_shape::PatchShape;
 use contact::{LoadedPatch, Meridian, Side};
 
 use super::free_state::FreeState;
 use super::place::Course;
-use super::run::Motion;
+use super::run::{Motion, MovingRing};
 use super::state::MotionState;
 use crate::balls::{BallResult, CageResult, ContactResult, FreeBallResult, Friction, TractionResult};
 use crate::effects::Now;
@@ -14,8 +16,8 @@ use crate::error::DynamicsError;
 use crate::footprint::on_groove;
 use crate::interactions::carried_site::across_on_ball;
 use crate::interactions::traction::largest_pv;
-use ring::RingState;
 use ring::rigid::RigidInertia;
+use ring::{ElasticBody, RingState};
 
 impl Motion<'_> {
     /// Results of every ball: mean forces of the last step, angles and approaches at its end.
@@ -195,13 +197,40 @@ impl Motion<'_> {
         self.model.body_load(side, &now, self.frame_angle(side, time))
     }
 
+    /// A state for results, of whose rings rank 0 has all: of rings whose vectors ranks divide, others keep their own
+    /// part. Collective.
+    pub fn gathered<'s>(&self, state: &'s MotionState) -> Cow<'s, MotionState> {
+        let is_divided = |moving: &MovingRing| moving.body.is_divided();
+        if !self.rings.iter().flatten().any(is_divided) {
+            return Cow::Borrowed(state);
+        }
+        Cow::Owned(self.with_rings(state.clone(), |body, ring| body.state_to_root(ring)))
+    }
+
+    /// This rank's part of a state of which each rank has all.
+    pub fn own(&self, whole: MotionState) -> MotionState {
+        self.with_rings(whole, |body, ring| body.own_state(ring))
+    }
+
+    fn with_rings(
+        &self,
+        mut state: MotionState,
+        of: impl Fn(&dyn ElasticBody, RingState) -> RingState,
+    ) -> MotionState {
+        for (ring, moving) in state.rings.iter_mut().zip(&self.rings) {
+            let both = ring.take().zip(moving.as_ref());
+            *ring = both.map(|(ring, moving)| of(&**moving.body, ring));
+        }
+        state
+    }
+
     /// Total nodal displacement of a flexible ring in its own frame, m, `[n_nodes][3]` flat, and the angle by which
-    /// that frame is turned in space, rad.
+    /// that frame is turned in space, rad; of a state that [`Motion::gathered`] gives.
     pub fn ring_displacement(&self, state: &MotionState, side: Side) -> Option<(Vec<f64>, f64)> {
         let moving = self.rings[side.index()].as_ref()?;
         let ring = state.rings[side.index()].as_ref()?;
         Some((
-            moving.body.nodal(ring.displacement()),
+            moving.body.nodal_of_whole(ring.displacement()),
             self.angle_of_frame(state, side),
         ))
     }
@@ -228,6 +257,7 @@ impl Motion<'_> {
     }
 
     /// Displacement, velocity and acceleration of the coordinates of a flexible ring, `[n]`, SI, whatever solves it.
+    /// Collective.
     pub fn ring_coordinates(&self, state: &MotionState, side: Side) -> Option<[Vec<f64>; 3]> {
         let moving = self.rings[side.index()].as_ref()?;
         let ring = state.rings[side.index()].as_ref()?;
@@ -236,14 +266,14 @@ impl Motion<'_> {
     }
 
     /// Linear momentum, kg m/s, and moment of momentum about the groove's centre on the axis, kg m^2/s, of a flexible
-    /// ring in its own frame.
+    /// ring in its own frame. Collective.
     pub fn ring_momentum(&self, state: &MotionState, side: Side) -> Option<[[f64; 3]; 2]> {
         let moving = self.rings[side.index()].as_ref()?;
         Some(moving.body.momentum(state.rings[side.index()].as_ref()?))
     }
 
     /// Mean motion of the groove centre under a ball over a step of one part, m, measured by the
-    /// patch of that step; zero on a rigid ring.
+    /// patch of that step; zero on a rigid ring. Collective.
     pub fn groove_motion(
         &self,
         from: &MotionState,

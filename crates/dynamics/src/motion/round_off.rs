@@ -11,14 +11,15 @@ use crate::error::DynamicsError;
 
 impl Motion<'_> {
     /// Energy of the round-off of both flexible rings, J: epsilon/2 times the sum of K_ii w_i^2, with K_ii = E h of an
-    /// element of the ring's mean size h. Integrates the rings' masses: for a run that is about to stop.
+    /// element of the ring's mean size h. Integrates the rings' masses: for a run that is about to stop. Collective.
     pub fn energy_round_off(&self, state: &MotionState) -> Result<f64, DynamicsError> {
         let mut sum = 0.0;
         for side in Side::BOTH {
-            let (Some(ring), Some((w, _))) = (self.model.ring(side), self.ring_displacement(state, side))
-            else {
+            let (moving, own) = (&self.rings[side.index()], &state.rings[side.index()]);
+            let (Some(ring), Some(moving), Some(own)) = (self.model.ring(side), moving, own) else {
                 continue;
             };
+            let w = moving.body.nodal(own.displacement());
             let masses = ring.node_masses(side.name())?;
             let volume = masses.total / ring.material.density;
             let stiffness = ring.material.young_modulus * (volume / ring.mesh.n_nodes() as f64).cbrt();

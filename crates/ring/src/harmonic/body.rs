@@ -42,7 +42,7 @@ impl ElasticBody for HarmonicBody {
 
     fn shape(&self) -> RingShape {
         RingShape {
-            length: self.space.len(),
+            length: self.space.whole_len(),
             kind: "harmonics",
             oscillators: 0,
         }
@@ -64,10 +64,34 @@ impl ElasticBody for HarmonicBody {
         from_harmonics(&self.space.ring, x)
     }
 
+    fn is_divided(&self) -> bool {
+        self.space.ring.is_shared()
+    }
+
+    fn to_root(&self, x: &[f64]) -> Option<Vec<f64>> {
+        let (harmonics, border) = x.split_at(self.space.ring.harmonic_len());
+        let mut whole = self.space.ring.to_root(harmonics)?;
+        whole.extend_from_slice(border);
+        Some(whole)
+    }
+
+    fn own(&self, whole: Vec<f64>) -> Vec<f64> {
+        let ring = &self.space.ring;
+        if !ring.is_shared() {
+            return whole;
+        }
+        [&whole[ring.own_harmonics()], &whole[ring.whole_len()..]].concat()
+    }
+
+    fn nodal_of_whole(&self, whole: &[f64]) -> Vec<f64> {
+        let coordinates = from_harmonics(&self.space.ring.alone(), whole);
+        self.held.coordinates.expand(&coordinates)
+    }
+
     /// Only the section nodes of the chosen ones are transformed.
-    fn nodal_at(&self, x: &[f64], nodes: &[usize]) -> Vec<f64> {
-        let (ring, coordinates) = (&self.space.ring, &self.held.coordinates);
-        let (harmonics, q) = x.split_at(ring.harmonic_len());
+    fn nodal_at(&self, whole: &[f64], nodes: &[usize]) -> Vec<f64> {
+        let (ring, coordinates) = (self.space.ring.alone(), &self.held.coordinates);
+        let (harmonics, q) = whole.split_at(ring.harmonic_len());
         let free = nodes.iter().filter_map(|&node| coordinates.free_node(node));
         let part = ring.section_part(&[], free);
         let found = ring.field_at(&part, harmonics);

@@ -13,10 +13,8 @@
 //! forces on them take a solve of their own block, and the second half is a backward sweep ([`solver::cyclic`]). So a
 //! step takes one solve of a ring. The rows of the border go with the first group ([`parts`]). Sums over the groups
 //! are taken in their order. A predictor that is found on its own ([`Pass::predict`]: at the start, after a change of
-//! the step size, after a step file) comes from the same functions and has the same bits. Solves of a ring that ranks
-//! share are collective, so that there the parts of a pass follow each other for the whole ring.
-
-use std::borrow::Cow;
+//! the step size, after a step file) comes from the same functions and has the same bits. Ranks that share a ring pass
+//! over their own groups each, and exchange sums and the border.
 
 use solver::cyclic::PartHarmonics;
 
@@ -45,10 +43,9 @@ pub(super) struct Pass<'a> {
 /// The increment of a step.
 pub(super) struct Increment<'a> {
     /// Loads on touched nodes, and on the border.
-    pub forces: Option<(PartHarmonics<'a>, Vec<f64>)>,
-    /// With forces the predictor, of which and of the forces the increment is the second half; else all of the
-    /// increment. Harmonics and border.
-    pub rest: Cow<'a, [f64]>,
+    pub forces: (PartHarmonics<'a>, Vec<f64>),
+    /// The predictor, of which and of the forces the increment is the second half: harmonics and border.
+    pub rest: &'a [f64],
 }
 
 /// What acts in a step besides contacts and partner, in the ring's space.
@@ -94,17 +91,9 @@ pub(super) struct Turned {
     pub rows: Option<Vec<f64>>,
 }
 
-/// What a group adds to the sums.
-#[derive(Default)]
-struct Found {
-    energies: [f64; 2],
-    works: [f64; 2],
-    /// Squares of a change and of the new load.
-    squares: [f64; 2],
-}
-
 impl Pass<'_> {
-    /// Ends a step from `old`; with `next`, finds the predictor of the next under these loads.
+    /// Ends a step from `old`; with `next`, finds the predictor of the next under these loads. Collective, as all
+    /// passes are.
     pub fn end(
         &self,
         old: &RingState,
@@ -113,8 +102,8 @@ impl Pass<'_> {
         next: Option<&KnownLoad>,
     ) -> PassEnd {
         let (space, pool) = (self.space, &self.space.pool);
-        let Increment { forces, rest } = self.whole_if_shared(increment);
-        let rest = space.parts(&rest);
+        let Increment { forces, rest } = increment;
+        let rest = space.parts(rest);
         let turning = self.turning(acting.turn);
         let [load, inertia] = [acting.load, acting.inertia].map(|x| x.map(|x| space.parts(x)));
         let next = next.map(|next| self.by_groups(next));
@@ -128,50 +117,37 @@ impl Pass<'_> {
             vectors,
             |group, [dw, mv, kw, field], [w, v, a, renewed, guess, solved]| {
                 let start = start.each_ref().map(|x| x.of(group));
-                let mut found = Found::default();
                 self.increment_part(group, &forces, rest.of(group), dw);
                 let end = [&mut *w, &mut *v, &mut *a];
                 advance_part(self.scheme, dw, start, end);
                 let dot = |load: &Parts<'_>| space.part_dot(group, load.of(group), dw);
-                found.works = [&load, &inertia].map(|load| load.as_ref().map_or(0.0, dot));
+                let [by_load, by_frame] = [&load, &inertia].map(|load| load.as_ref().map_or(0.0, dot));
+                let mut squares = [0.0; 2];
                 if let (Some(turning), Some(used)) = (turning, &inertia) {
                     self.frame_part(turning, group, (start, Some(dw)), field, renewed);
-                    found.squares = self.compare(group, [renewed, used.of(group)], field);
+                    squares = self.compare(group, [renewed, used.of(group)], field);
                 }
-                found.energies = self.products(group, [w, v], [&mut *mv, &mut *kw]);
+                let [kinetic, strain] = space.products(group, [w, v], [&mut *mv, &mut *kw]);
                 if let Some(next) = &next {
                     self.predict_part(group, next, [w, v, a], [mv, kw, field], [guess, solved]);
                 }
-                found
+                [kinetic, strain, by_load, by_frame, squares[0], squares[1]]
             },
         );
-        if next.is_some() {
-            self.begin_if_shared(&mut solved);
-        }
+        let [kinetic, strain, by_load, by_frame, square, new_square] = found;
         let state = RingState::new(w, v, a);
-        let energies = total(&found, |f| f.energies).map(|twice| 0.5 * twice);
-        let (energies, rows) = self.with_defect(&state, energies);
+        let rows = space.defect.as_ref().map(|defect| defect.of_state(&state));
         PassEnd {
+            energies: space.with_defect(&state, [0.5 * kinetic, 0.5 * strain], rows.as_ref()),
             state,
-            energies,
             rows,
-            works: total(&found, |f| f.works),
-            renewed: (renewed, change(&found)),
+            works: [by_load, by_frame],
+            renewed: (renewed, LoadChange { square, new_square }),
             next: next.map(|_| Predicted {
                 solved,
                 inertia: guess,
             }),
         }
-    }
-
-    /// The energies of a state with those of the defect, and the rows of the defect in the state.
-    fn with_defect(&self, state: &RingState, energies: [f64; 2]) -> ([f64; 2], Option<RowValues>) {
-        let Some(defect) = &self.space.defect else {
-            return (energies, None);
-        };
-        let rows = defect.of_state(state);
-        let more = self.space.defect_energies(defect, state.displacement(), &rows);
-        ([energies[0] + more[0], energies[1] + more[1]], Some(rows))
     }
 
     /// The answer of a ring in the state `state` to the known loads of a step from there.
@@ -183,10 +159,10 @@ impl Pass<'_> {
         let vectors = [&mut inertia, &mut solved].map(|x| &mut x[..]);
         space.over_groups(vectors, |group, [mv, kw, field], outs| {
             let [w, v, a] = state.each_ref().map(|x| x.of(group));
-            self.products(group, [w, v], [&mut *mv, &mut *kw]);
+            space.products(group, [w, v], [&mut *mv, &mut *kw]);
             self.predict_part(group, &load, [w, v, a], [mv, kw, field], outs);
+            []
         });
-        self.begin_if_shared(&mut solved);
         Predicted { solved, inertia }
     }
 
@@ -199,54 +175,34 @@ impl Pass<'_> {
         predictor: &[f64],
     ) -> Turned {
         let (space, pool) = (self.space, &self.space.pool);
-        let Increment { forces, rest } = self.whole_if_shared(increment);
-        let rest = space.parts(&rest);
+        let Increment { forces, rest } = increment;
+        let rest = space.parts(rest);
         let turning = (turn, space.frame(self.nodes));
         let [used, before] = [used, predictor].map(|x| space.parts(x));
         let start = old.vectors().map(|x| space.parts(x));
         let [mut inertia, mut solved] = [(); 2].map(|()| pool.take());
         let mut whole = pool.take_if(space.defect.as_ref());
         let vectors = [&mut inertia, &mut solved, &mut whole].map(|x| &mut x[..]);
-        let found = space.over_groups(vectors, |group, [dw, field], [renewed, solved, whole]| {
-            let start = start.each_ref().map(|x| x.of(group));
-            let mut found = Found::default();
-            self.increment_part(group, &forces, rest.of(group), dw);
-            if !whole.is_empty() {
-                whole.copy_from_slice(dw);
-            }
-            self.frame_part(turning, group, (start, Some(dw)), field, renewed);
-            found.squares = self.compare(group, [renewed, used.of(group)], solved);
-            if !self.factor.solver.is_shared() {
+        let [square, new_square] =
+            space.over_groups(vectors, |group, [dw, field], [renewed, solved, whole]| {
+                let start = start.each_ref().map(|x| x.of(group));
+                self.increment_part(group, &forces, rest.of(group), dw);
+                if !whole.is_empty() {
+                    whole.copy_from_slice(dw);
+                }
+                self.frame_part(turning, group, (start, Some(dw)), field, renewed);
+                let squares = self.compare(group, [renewed, used.of(group)], solved);
                 self.begin_part(group, solved);
                 vectors::add_part(solved, before.of(group));
-            }
-            found
-        });
-        if self.factor.solver.is_shared() {
-            self.factor.begin_in_place(&mut solved);
-            vectors::add(&mut solved, predictor);
-        }
+                squares
+            });
         Turned {
             inertia,
-            change: change(&found),
+            change: LoadChange { square, new_square },
             predictor: solved,
             rows: space.defect.as_ref().map(|defect| defect.values(&whole)),
         }
     }
-}
-
-/// The change that all groups make.
-fn change(found: &[Found]) -> LoadChange {
-    let [square, new_square] = total(found, |f| f.squares);
-    LoadChange { square, new_square }
-}
-
-/// Sums over the groups, in their order.
-fn total(found: &[Found], of: impl Fn(&Found) -> [f64; 2]) -> [f64; 2] {
-    found
-        .iter()
-        .map(of)
-        .fold([0.0; 2], |[a, b], [c, d]| [a + c, b + d])
 }
 
 mod group;

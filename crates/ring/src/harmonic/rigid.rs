@@ -54,7 +54,9 @@ impl RigidMotions {
         let on_rows = |defect: &SpaceDefect| {
             let whole = |low: &Vec<f64>| {
                 let mut whole = vec![0.0; len + shaft.len()];
-                whole[..low_len].copy_from_slice(&low[..low_len]);
+                if ring.has_first_group() {
+                    whole[..low_len].copy_from_slice(&low[..low_len]);
+                }
                 whole[len..].copy_from_slice(&low[low_len..]);
                 whole
             };

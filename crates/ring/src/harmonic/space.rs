@@ -3,7 +3,8 @@
 //! The state of a periodic ring never leaves harmonic space while it moves: matrices act there harmonic by harmonic
 //! ([`solver::cyclic::HarmonicOperator`]), and so does the inertia of a turning frame, which is local in cylindrical
 //! components. Nodal fields are made when results ask for them. Scalar products of nodal vectors are those of
-//! Parseval. The dofs of a shaft that carries the bore stay what they are, behind the harmonics.
+//! Parseval. The dofs of a shaft that carries the bore stay what they are, behind the harmonics. Of a ring that ranks
+//! share, a vector has the harmonics of its rank alone, and all dofs of the shaft.
 
 use std::borrow::Cow;
 use std::sync::OnceLock;
@@ -50,7 +51,7 @@ pub(super) struct FrameLoads {
     shaft: Vec<[Vec<f64>; 2]>,
 }
 
-/// Harmonics and border of the coordinates `y`.
+/// Harmonics of this rank and border of the coordinates `y`.
 pub(super) fn to_harmonics(ring: &CyclicRing, y: &[f64]) -> Vec<f64> {
     let (free, border) = y.split_at(ring.n());
     let mut x = vec![0.0; ring.harmonic_len() + border.len()];
@@ -60,7 +61,7 @@ pub(super) fn to_harmonics(ring: &CyclicRing, y: &[f64]) -> Vec<f64> {
     x
 }
 
-/// Coordinates of the harmonics and border `x`.
+/// Coordinates of the harmonics of this rank and the border `x`. Collective.
 pub(super) fn from_harmonics(ring: &CyclicRing, x: &[f64]) -> Vec<f64> {
     let (harmonics, border) = x.split_at(ring.harmonic_len());
     let mut y = vec![0.0; ring.n() + border.len()];
@@ -102,9 +103,9 @@ impl HarmonicSpace {
         })
     }
 
-    /// Length of a vector.
-    pub(super) fn len(&self) -> usize {
-        self.ring.harmonic_len() + self.n_shaft
+    /// Length of a vector of all ranks.
+    pub(super) fn whole_len(&self) -> usize {
+        self.ring.whole_len() + self.n_shaft
     }
 
     /// Length of one group's part of a vector, of the first with the rows of the border.
@@ -118,28 +119,47 @@ impl HarmonicSpace {
         self.ring.group_dot(group, &a[..low], &b[..low]) + dot(&a[low..], &b[low..])
     }
 
-    /// Kinetic and strain energy, J.
+    /// Kinetic and strain energy, J: the bits that a step finds as it ends. Collective.
     pub(super) fn energies(&self, state: &RingState) -> [f64; 2] {
-        let [w, v, _] = state.vectors();
-        let mut strained = w.to_vec();
-        self.put_low(self.strained_part(0, &self.low_of(w)).as_ref(), &mut strained);
-        let mut regular = [(&self.mass, v, v), (&self.stiffness, &strained, w)].map(|(operator, a, x)| {
-            let (product, len) = (operator.product(x), self.ring.harmonic_len());
-            let harmonics = self.ring.harmonic_dot(&a[..len], &product[..len]);
-            0.5 * (harmonics + dot(&a[len..], &product[len..]))
+        let [w, v, _] = state.vectors().map(|x| self.parts(x));
+        let twice = self.over_groups([], |group, [mv, kw], []| {
+            self.products(group, [w.of(group), v.of(group)], [mv, kw])
         });
-        regular[1] += 0.5 * self.residual_energy(0, &self.low_of(w));
-        match &self.defect {
-            None => regular,
-            Some(defect) => {
-                let more = self.defect_energies(defect, w, &defect.of_state(state));
-                [regular[0] + more[0], regular[1] + more[1]]
-            }
-        }
+        let rows = self.defect.as_ref().map(|defect| defect.of_state(state));
+        self.with_defect(state, twice.map(|twice| 0.5 * twice), rows.as_ref())
     }
 
-    /// What a defect adds to kinetic and strain energy, J, of a state with the displacement `w`.
-    pub(super) fn defect_energies(&self, defect: &SpaceDefect, w: &[f64], rows: &RowValues) -> [f64; 2] {
+    /// M v and K w of one group into `mv` and `kw`; twice the energies, that of K without the round-off of rigid
+    /// motions.
+    pub(super) fn products(&self, group: usize, [w, v]: [&[f64]; 2], [mv, kw]: [&mut [f64]; 2]) -> [f64; 2] {
+        self.mass.group_product(group, v, mv);
+        self.stiffness.group_product(group, w, kw);
+        let strained = self.strained_part(group, w);
+        let strain = self.part_dot(group, &strained, kw) + self.residual_energy(group, w);
+        [self.part_dot(group, v, mv), strain]
+    }
+
+    /// The energies of a state with those of the defect, whose rows have the values `rows`. Collective.
+    pub(super) fn with_defect(
+        &self,
+        state: &RingState,
+        [kinetic, strain]: [f64; 2],
+        rows: Option<&RowValues>,
+    ) -> [f64; 2] {
+        let (Some(defect), Some(rows)) = (&self.defect, rows) else {
+            return [kinetic, strain];
+        };
+        let mut more = match self.ring.has_first_group() {
+            true => self.defect_energies(defect, state.displacement(), rows),
+            false => [0.0; 2],
+        };
+        self.ring.share_first(&mut more);
+        [kinetic + more[0], strain + more[1]]
+    }
+
+    /// What a defect adds to kinetic and strain energy, J, of a state with the displacement `w`, on the rank of the
+    /// first group.
+    fn defect_energies(&self, defect: &SpaceDefect, w: &[f64], rows: &RowValues) -> [f64; 2] {
         let RowValues([on_rows, v, _]) = rows;
         let product = defect.product(Matrix::Stiffness, on_rows);
         let twice = self
@@ -149,7 +169,7 @@ impl HarmonicSpace {
     }
 
     /// The part of one group's displacement that is no rigid motion.
-    pub(super) fn strained_part<'w>(&self, group: usize, w: &'w [f64]) -> Cow<'w, [f64]> {
+    fn strained_part<'w>(&self, group: usize, w: &'w [f64]) -> Cow<'w, [f64]> {
         if group > 0 || self.rigid.is_empty() {
             return Cow::Borrowed(w);
         }
@@ -157,26 +177,19 @@ impl HarmonicSpace {
     }
 
     /// Twice the energy that is left out with the rigid motion of one group's displacement: that of the round-off of K.
-    pub(super) fn residual_energy(&self, group: usize, w: &[f64]) -> f64 {
+    fn residual_energy(&self, group: usize, w: &[f64]) -> f64 {
         match group {
             0 => self.rigid.twice_residual_energy(&self.ring, w),
             _ => 0.0,
         }
     }
 
-    /// The first group of a vector with the border.
-    fn low_of(&self, x: &[f64]) -> Vec<f64> {
+    /// The first group of a vector with the border, on the rank of that group.
+    pub(super) fn low_of(&self, x: &[f64]) -> Vec<f64> {
         [&x[..self.ring.low_len()], &x[self.ring.harmonic_len()..]].concat()
     }
 
-    /// Puts the first group with the border into a vector.
-    fn put_low(&self, low: &[f64], x: &mut [f64]) {
-        let (harmonics, border) = low.split_at(self.ring.low_len());
-        x[..harmonics.len()].copy_from_slice(harmonics);
-        x[self.ring.harmonic_len()..].copy_from_slice(border);
-    }
-
-    /// a A b of a matrix A, 0 with one that the ring lacks.
+    /// a A b of a matrix A, 0 with one that the ring lacks. Collective.
     pub(super) fn form(&self, matrix: Matrix, a: &[f64], b: &[f64]) -> f64 {
         let operator = match matrix {
             Matrix::Mass => Some(&self.mass),
@@ -184,8 +197,11 @@ impl HarmonicSpace {
             Matrix::Stress => self.stress.as_ref(),
         };
         let Some(operator) = operator else { return 0.0 };
-        let (product, len) = (operator.product(b), self.ring.harmonic_len());
-        let regular = self.ring.harmonic_dot(&a[..len], &product[..len]) + dot(&a[len..], &product[len..]);
+        let [by_groups, of_groups] = [a, b].map(|x| self.parts(x));
+        let [regular] = self.over_groups([], |group, [product], []| {
+            operator.group_product(group, of_groups.of(group), product);
+            [self.part_dot(group, by_groups.of(group), product)]
+        });
         let of_defect = |defect: &SpaceDefect| {
             let [a, b] = [a, b].map(|x| defect.values(x));
             defect.form(matrix, &a, &b)

@@ -1,7 +1,6 @@
 //! A step of a ring in harmonic space, around its pass over the harmonics ([`super::pass`]): its contacts meet the
 //! predictor, their forces make the increment.
 
-use std::borrow::Cow;
 use std::sync::Arc;
 
 use timer::{Laps, Stopwatch};
@@ -183,8 +182,8 @@ impl HarmonicStep<'_> {
         let by_defect = factor.by_defect(self.defect.as_ref(), forces);
         let loads = self.ports.loads(&self.factor.body.held, forces).chain(by_defect);
         Increment {
-            forces: Some(factor.forces(loads)),
-            rest: Cow::Borrowed(&self.predictor),
+            forces: factor.forces(loads),
+            rest: &self.predictor,
         }
     }
 

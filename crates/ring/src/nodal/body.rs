@@ -58,8 +58,8 @@ impl<S: NodalSolver> ElasticBody for NodalBody<S> {
         self.held.coordinates.expand(x)
     }
 
-    fn nodal_at(&self, x: &[f64], _: &[usize]) -> Vec<f64> {
-        self.nodal(x)
+    fn nodal_at(&self, whole: &[f64], _: &[usize]) -> Vec<f64> {
+        self.nodal(whole)
     }
 
     fn form(&self, matrix: Matrix, a: &[f64], b: &[f64]) -> f64 {

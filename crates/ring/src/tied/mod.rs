@@ -111,8 +111,24 @@ impl ElasticBody for TiedRing {
         self.ring.nodal(x)
     }
 
-    fn nodal_at(&self, x: &[f64], nodes: &[usize]) -> Vec<f64> {
-        self.ring.nodal_at(x, nodes)
+    fn is_divided(&self) -> bool {
+        self.ring.is_divided()
+    }
+
+    fn to_root(&self, x: &[f64]) -> Option<Vec<f64>> {
+        self.ring.to_root(x)
+    }
+
+    fn own(&self, whole: Vec<f64>) -> Vec<f64> {
+        self.ring.own(whole)
+    }
+
+    fn nodal_of_whole(&self, whole: &[f64]) -> Vec<f64> {
+        self.ring.nodal_of_whole(whole)
+    }
+
+    fn nodal_at(&self, whole: &[f64], nodes: &[usize]) -> Vec<f64> {
+        self.ring.nodal_at(whole, nodes)
     }
 
     fn form(&self, matrix: Matrix, a: &[f64], b: &[f64]) -> f64 {
@@ -150,7 +166,7 @@ impl ElasticBody for TiedRing {
 
 /// A, the compliance of a ring's mount, m/N, `[n][n]` flat: what a step without contacts answers.
 fn seat_compliance(ring: &dyn ElasticBody, factor: &dyn StepFactor) -> Vec<f64> {
-    let none = || vec![0.0; ring.shape().length];
+    let none = || ring.of_coordinates(vec![0.0; ring.n()]);
     let rest = RingState::new(none(), none(), none());
     let known = Arc::new(factor.predict(&rest, KnownLoad::default()));
     let feet = Feet {

@@ -74,7 +74,7 @@ impl CyclicBordered {
     }
 
     /// Replaces right-hand sides by solutions: `columns` in harmonic space, `[harmonic_len()]` each, and the rows of
-    /// the border `border`, `[columns.len()][m]`.
+    /// the border `border`, `[columns.len()][m]`. Collective where there is a border.
     ///
     /// # Panics
     /// When the lengths are others.
@@ -91,12 +91,22 @@ impl CyclicBordered {
     ) {
         let m = self.schur.n();
         assert_eq!(border.len(), m * columns.len(), "{m} rows of border per column");
-        let low = self.factor.ring().low_len();
-        for (w, q) in columns.iter().zip(border.chunks_exact_mut(m.max(1))) {
+        let (low, has_first) = (self.factor.ring().low_len(), self.factor.ring().has_first_group());
+        let n_first = if has_first { columns.len() } else { 0 };
+        for (w, q) in columns
+            .iter()
+            .zip(border.chunks_exact_mut(m.max(1)))
+            .take(n_first)
+        {
             self.reduce_border(&w[..low], q);
         }
+        self.factor.ring().share_first(border);
         solve(columns);
-        for (w, q) in columns.iter_mut().zip(border.chunks_exact(m.max(1))) {
+        for (w, q) in columns
+            .iter_mut()
+            .zip(border.chunks_exact(m.max(1)))
+            .take(n_first)
+        {
             self.follow_border(q, &mut w[..low]);
         }
     }
@@ -106,9 +116,8 @@ impl CyclicBordered {
     /// [`CyclicBordered::solve_harmonic`].
     ///
     /// # Panics
-    /// When a length is another, or ranks share the solves.
+    /// When a length is another, or the group is another rank's.
     pub fn solve_group(&self, group: usize, low: &mut [f64], border: &mut [f64]) {
-        assert!(!self.is_shared(), "solves that ranks share are of all groups");
         let m = if group == 0 { self.schur.n() } else { 0 };
         assert_eq!(border.len(), m, "the border goes with the first group");
         if m > 0 {
@@ -118,11 +127,6 @@ impl CyclicBordered {
         if m > 0 {
             self.follow_border(border, low);
         }
-    }
-
-    /// Whether ranks share the solves, which are collective then.
-    pub fn is_shared(&self) -> bool {
-        self.factor.ring().comm.size() > 1
     }
 
     /// The rows q of the border of a solution, from those of the right-hand side and its first group.
@@ -146,9 +150,9 @@ impl CyclicRing {
     pub(super) fn first_group(&self, nodal: &[f64]) -> Result<Vec<f64>, SolverError> {
         let (n, group_len) = (self.n(), self.group_len());
         let mut rows = Vec::with_capacity(group_len * nodal.len().checked_div(n).unwrap_or(0));
-        let mut harmonic = vec![0.0; self.harmonic_len()];
+        let mut harmonic = vec![0.0; self.whole_len()];
         for (column, nodal) in nodal.chunks_exact(n.max(1)).enumerate() {
-            self.to_harmonic(nodal, &mut harmonic);
+            self.alone().to_harmonic(nodal, &mut harmonic);
             let (low, high) = harmonic.split_at(group_len);
             let largest = |x: &[f64]| x.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
             let share = largest(high) / largest(low).max(f64::MIN_POSITIVE);

@@ -1,7 +1,6 @@
 //! The factored harmonics of a rotationally periodic ring.
 
 use std::marker::PhantomData;
-use std::ops::Range;
 
 use pulp::Arch;
 use rayon::prelude::*;
@@ -301,7 +300,6 @@ impl CyclicCholesky {
     }
 
     /// Replaces right-hand sides in harmonic space, `[harmonic_len()]` each, by the solutions; harmonics in parallel.
-    /// Of a ring that ranks share, each solves its own, and one gather per column makes all whole.
     ///
     /// # Panics
     /// When a column has another length.
@@ -309,7 +307,7 @@ impl CyclicCholesky {
         self.sweep_harmonic(columns, |_| Sweeps::Whole);
     }
 
-    /// The sweeps `of_group` in each group; of a ring that ranks share collective as a solve.
+    /// The sweeps `of_group` in each group of this rank.
     pub(super) fn sweep_harmonic(
         &self,
         columns: &mut [&mut [f64]],
@@ -326,11 +324,10 @@ impl CyclicCholesky {
             return;
         }
         let (group_len, own) = (self.ring.group_len(), self.ring.own_groups());
-        let range = group_len * own.start..group_len * own.end;
         let mut groups: Vec<Vec<&mut [f64]>> =
             own.clone().map(|_| Vec::with_capacity(columns.len())).collect();
         for column in columns.iter_mut() {
-            let parts = column[range.clone()].chunks_exact_mut(group_len);
+            let parts = column.chunks_exact_mut(group_len);
             groups
                 .iter_mut()
                 .zip(parts)
@@ -338,31 +335,16 @@ impl CyclicCholesky {
         }
         groups
             .into_par_iter()
-            .enumerate()
-            .for_each(|(place, columns)| self.sweep(place, columns, of_group(own.start + place)));
-        let comm = self.ring.comm;
-        if comm.size() > 1 {
-            let shares = comm.shares(self.ring.shared.phases.n_groups());
-            let lengths: Vec<usize> = shares.iter().map(|share| group_len * share.len()).collect();
-            for column in columns {
-                let whole = comm.all_gather(column[range.clone()].to_vec(), &lengths);
-                column.copy_from_slice(&whole);
-            }
-        }
+            .zip(own)
+            .for_each(|(columns, group)| self.sweep(group, columns, of_group(group)));
     }
 
     /// Solves one right-hand side for the first group of harmonics alone; collective.
     pub(super) fn solve_first_group(&self, low: &mut [f64]) {
-        let comm = self.ring.comm;
-        let shares = comm.shares(self.ring.shared.phases.n_groups());
-        let mut solved = Vec::new();
-        if shares[comm.rank()].contains(&0) {
+        if self.ring.has_first_group() {
             self.solve_one(0, low);
-            solved.extend_from_slice(low);
         }
-        let length = |share: &Range<usize>| if share.contains(&0) { low.len() } else { 0 };
-        let lengths: Vec<usize> = shares.iter().map(length).collect();
-        low.copy_from_slice(&comm.all_gather(solved, &lengths));
+        self.ring.share_first(low);
     }
 }
 

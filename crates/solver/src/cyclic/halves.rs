@@ -22,7 +22,7 @@ impl CyclicBordered {
     /// by its half solved form: final at the nodes that trail and in the border. Half solved vectors add up.
     ///
     /// # Panics
-    /// When a length is another, or ranks share the solves.
+    /// When a length is another, or the group is another rank's.
     pub fn begin_group(&self, group: usize, low: &mut [f64], border: &mut [f64]) {
         self.halve_group(group, low, border, Sweeps::Begin);
     }
@@ -50,7 +50,6 @@ impl CyclicBordered {
         match self.inner().ring().trailing(group) {
             0 => self.solve_group(group, low, border),
             trailing => {
-                assert!(!self.is_shared(), "solves that ranks share are of all groups");
                 assert!(border.is_empty(), "the border goes with the first group");
                 self.inner().sweep(group, vec![low], sweeps(trailing));
             }
@@ -60,9 +59,8 @@ impl CyclicBordered {
     /// Replaces one group's part of a half solved vector by the solution.
     ///
     /// # Panics
-    /// When the length is another, or ranks share the solves.
+    /// When the length is another, or the group is another rank's.
     pub fn finish_group(&self, group: usize, low: &mut [f64]) {
-        assert!(!self.is_shared(), "solves that ranks share are of all groups");
         match self.inner().ring().trailing(group) {
             0 => {}
             trailing => self.inner().sweep(group, vec![low], Sweeps::Finish(trailing)),
@@ -70,7 +68,7 @@ impl CyclicBordered {
     }
 
     /// Replaces a right-hand side in harmonic space, `[harmonic_len()]`, and the rows of the border by its half
-    /// solved form; collective when ranks share the solves. The bits of [`CyclicBordered::begin_group`].
+    /// solved form; collective where there is a border. The bits of [`CyclicBordered::begin_group`].
     ///
     /// # Panics
     /// When a length is another.
@@ -103,7 +101,7 @@ impl CyclicBordered {
         });
     }
 
-    /// Replaces a half solved vector, `[harmonic_len()]`, by the solution; collective when ranks share the solves.
+    /// Replaces a half solved vector, `[harmonic_len()]`, by the solution.
     ///
     /// # Panics
     /// When the length is another.
@@ -117,22 +115,23 @@ impl CyclicBordered {
 }
 
 impl CyclicCholesky {
-    /// Solves one right-hand side for one group, by its place among those of this rank.
-    pub(super) fn solve_one(&self, place: usize, column: &mut [f64]) {
-        self.sweep(place, vec![column], Sweeps::Whole);
+    /// Solves one right-hand side for one group of this rank.
+    pub(super) fn solve_one(&self, group: usize, column: &mut [f64]) {
+        self.sweep(group, vec![column], Sweeps::Whole);
     }
 
-    /// Does these sweeps for one group, by its place among those of this rank.
-    pub(super) fn sweep(&self, place: usize, columns: Vec<&mut [f64]>, sweeps: Sweeps) {
+    /// Does these sweeps for one group of this rank.
+    pub(super) fn sweep(&self, group: usize, columns: Vec<&mut [f64]>, sweeps: Sweeps) {
         match self.symmetry() {
-            Symmetry::Mirrored => self.sweep_form::<Real>(place, columns, sweeps),
-            Symmetry::None => self.sweep_form::<Hermitian>(place, columns, sweeps),
+            Symmetry::Mirrored => self.sweep_form::<Real>(group, columns, sweeps),
+            Symmetry::None => self.sweep_form::<Hermitian>(group, columns, sweeps),
         }
     }
 
     fn sweep_form<F: Form>(&self, group: usize, columns: Vec<&mut [f64]>, sweeps: Sweeps) {
-        let group_len = self.ring().factor_len::<F>();
-        let values = &self.values[group * group_len..(group + 1) * group_len];
+        let (group_len, own) = (self.ring().factor_len::<F>(), self.ring().own_groups());
+        let place = group.checked_sub(own.start).expect("a group of this rank");
+        let values = &self.values[place * group_len..][..group_len];
         self.ring().sweep_group::<F>(values, columns, sweeps);
     }
 }

@@ -13,9 +13,9 @@
 //!
 //! **Vectors** come in two forms. *Nodal*: Cartesian, the caller's order, `[n]`. *Harmonic*: groups of four harmonics,
 //! `[n_groups][n_section_nodes][3][2][4]`: section nodes in elimination order, components (radial, azimuthal, axial),
-//! real and imaginary part, harmonic of the group; unused harmonics of the last group are zero. A state can stay in
-//! harmonic space: solve, product, scalar product, loads and displacements of single nodes are there; output needs a
-//! transform.
+//! real and imaginary part, harmonic of the group; unused harmonics of the last group are zero. Of a ring that ranks
+//! share, each has its own groups of a harmonic vector (`shared`). A state can stay in harmonic space: solve, product,
+//! scalar product and loads of single nodes are there; output needs a transform.
 //!
 //! **Order.** Section nodes are eliminated in the order, of several, whose factor has the fewest blocks (`order`). It
 //! can end with chosen nodes ([`CyclicRing::ending_with`]): a solve then comes in two halves, between which loads on
@@ -61,6 +61,7 @@ mod product;
 mod response;
 mod ring;
 mod row_responses;
+mod shared;
 mod sites;
 mod sloan;
 mod stencil;

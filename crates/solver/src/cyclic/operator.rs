@@ -6,7 +6,6 @@
 //! vectors hold that group and the border, `[low_len() + m]`.
 
 use pulp::Arch;
-use rayon::prelude::*;
 
 use super::factor::Symmetry;
 use super::matrix::CyclicMatrix;
@@ -61,27 +60,6 @@ impl HarmonicOperator {
         &self.ring
     }
 
-    /// The product with `x`, harmonics in parallel.
-    ///
-    /// # Panics
-    /// When the length is another.
-    pub fn product(&self, x: &[f64]) -> Vec<f64> {
-        let (len, low) = (self.ring.harmonic_len(), self.ring.low_len());
-        assert_eq!(x.len(), len + self.border.len(), "harmonics and border");
-        let mut y = vec![0.0; x.len()];
-        y[low..len]
-            .par_chunks_mut(low.max(1))
-            .zip(x[low..len].par_chunks(low.max(1)))
-            .enumerate()
-            .for_each(|(place, (y, x))| self.group_product(place + 1, x, y));
-        let first = [&x[..low], &x[len..]].concat();
-        let mut product = vec![0.0; first.len()];
-        self.group_product(0, &first, &mut product);
-        y[..low].copy_from_slice(&product[..low]);
-        y[len..].copy_from_slice(&product[low..]);
-        y
-    }
-
     /// Overwrites one group's part of a product, `[low_len()]`, of the first group with the border, a low vector:
     /// what a pass over the groups does while they are in the cache.
     ///
@@ -127,7 +105,7 @@ impl HarmonicOperator {
 impl CyclicRing {
     /// Length of the first group's part of a vector in harmonic space.
     pub fn low_len(&self) -> usize {
-        self.group_len().min(self.harmonic_len())
+        self.group_len()
     }
 
     /// The low vector of the nodal vector `nodal` (Cartesian, `[n]`), which is of harmonics 0 and 1, and of the
@@ -136,8 +114,8 @@ impl CyclicRing {
     /// # Panics
     /// When the length is another.
     pub fn to_low(&self, nodal: &[f64], border: &[f64]) -> Vec<f64> {
-        let mut harmonic = vec![0.0; self.harmonic_len()];
-        self.to_harmonic(nodal, &mut harmonic);
+        let mut harmonic = vec![0.0; self.whole_len()];
+        self.alone().to_harmonic(nodal, &mut harmonic);
         harmonic.truncate(self.low_len());
         harmonic.extend_from_slice(border);
         harmonic

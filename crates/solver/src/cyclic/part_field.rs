@@ -46,7 +46,7 @@ pub struct PartHarmonics<'a> {
 }
 
 impl CyclicRing {
-    /// The field `harmonic`, `[harmonic_len()]`, at the nodes of `part`.
+    /// The field `harmonic`, `[harmonic_len()]`, at the nodes of `part`. Collective.
     ///
     /// # Panics
     /// When the length is another.

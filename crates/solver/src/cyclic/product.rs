@@ -20,11 +20,11 @@ impl CyclicRing {
         if x.is_empty() {
             return Ok(());
         }
-        let len = self.group_len();
+        let (len, first) = (self.group_len(), self.own_groups().start);
         y.par_chunks_mut(len)
             .zip(x.par_chunks(len))
             .enumerate()
-            .for_each(|(group, (y, x))| self.apply_group(matrix, group, x, y));
+            .for_each(|(i, (y, x))| self.apply_group(matrix, first + i, x, y));
         Ok(())
     }
 

@@ -249,9 +249,10 @@ fn pairs_apart(n: usize, k: usize) -> usize {
 fn spectra(factor: &CyclicCholesky, places: &[usize]) -> Vec<Spectrum> {
     let ring = factor.ring();
     let (n_harmonics, n_dofs) = (ring.shared.phases.n_harmonics(), 3 * places.len());
-    let (len, group_len) = (ring.harmonic_len(), ring.group_len());
+    let (len, group_len, own) = (ring.harmonic_len(), ring.group_len(), ring.own_groups());
+    let own_harmonics = own.start * LANES..n_harmonics.min(own.end * LANES);
     let index = |k: usize, dof: usize| {
-        (k / LANES) * group_len + 2 * LANES * (3 * places[dof / 3] + dof % 3) + k % LANES
+        (k / LANES - own.start) * group_len + 2 * LANES * (3 * places[dof / 3] + dof % 3) + k % LANES
     };
     // Only what follows the first of them in the order is needed.
     let first_place = places.iter().copied().min().unwrap_or(0);
@@ -262,16 +263,15 @@ fn spectra(factor: &CyclicCholesky, places: &[usize]) -> Vec<Spectrum> {
         let used = &mut columns[..len * forces.len()];
         used.fill(0.0);
         for (column, force) in used.chunks_exact_mut(len).zip(forces) {
-            (0..n_harmonics).for_each(|k| column[index(k, force)] = 1.0);
+            own_harmonics.clone().for_each(|k| column[index(k, force)] = 1.0);
         }
         let mut used_columns: Vec<&mut [f64]> = used.chunks_exact_mut(len).collect();
         factor.sweep_harmonic(&mut used_columns, |_| Sweeps::Trailing(first_place));
         for column in used.chunks_exact(len) {
+            let all = ring.at_places(places, column);
             for dof in 0..n_dofs {
-                spectra.extend((0..n_harmonics).map(|k| {
-                    let start = index(k, dof);
-                    Complex::new(column[start], column[start + LANES])
-                }));
+                let at = (dof / 3, places[dof / 3]);
+                spectra.extend((0..n_harmonics).map(|k| all.harmonic(k, at, dof % 3)));
             }
         }
     }

@@ -183,13 +183,13 @@ impl CyclicRing {
     }
 
     /// The ring whose groups of harmonics are dealt out to the ranks of `comm`, in equal runs: each factors and
-    /// solves its own. Vectors are whole on all ranks, so factors and solves are collective then.
+    /// solves its own, and has those of a vector in harmonic space alone ([`super::shared`]).
     pub fn shared_by(self, comm: Communicator) -> CyclicRing {
         CyclicRing { comm, ..self }
     }
 
     /// Groups of harmonics of this rank.
-    pub(super) fn own_groups(&self) -> Range<usize> {
+    pub fn own_groups(&self) -> Range<usize> {
         self.comm.share(self.shared.phases.n_groups())
     }
 
@@ -272,8 +272,14 @@ impl CyclicRing {
         3 * self.shared.sites.len()
     }
 
-    /// Length of a vector in harmonic space: groups of four harmonics, the last one filled up with zeros.
+    /// Length of a vector in harmonic space: this rank's groups of four harmonics, the last one of all filled up with
+    /// zeros.
     pub fn harmonic_len(&self) -> usize {
+        self.own_groups().len() * self.group_len()
+    }
+
+    /// The same of the groups of all ranks.
+    pub fn whole_len(&self) -> usize {
         self.shared.phases.n_groups() * self.group_len()
     }
 

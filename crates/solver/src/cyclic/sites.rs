@@ -1,4 +1,4 @@
-//! Loads and displacements of single nodes in harmonic space, without transforming the whole field.
+//! Loads on single nodes in harmonic space, without transforming the whole field.
 //!
 //! Cost: N/2 + 1 harmonics for each node, three components; for a few hundred nodes less than one transform of the
 //! field.
@@ -34,10 +34,12 @@ impl CyclicRing {
                 [c * x + s * y, c * y - s * x, z]
             })
             .collect();
+        let first = self.own_groups().start;
         harmonic
             .par_chunks_mut(self.group_len().max(1))
             .enumerate()
-            .for_each(|(group, lanes)| {
+            .for_each(|(i, lanes)| {
+                let group = first + i;
                 let last = shared.phases.n_harmonics().min((group + 1) * LANES);
                 for (site, [radial, azimuthal, axial]) in sites.iter().zip(&forces) {
                     let node = &mut lanes[6 * LANES * site.place..][..6 * LANES];
@@ -57,34 +59,6 @@ impl CyclicRing {
                     }
                 }
             });
-    }
-
-    /// Cartesian displacements, m, of the caller's nodes `nodes` in the field `harmonic`, `[nodes.len()][3]`.
-    ///
-    /// # Panics
-    /// When the length is another, or a node does not exist.
-    pub fn displacements(&self, nodes: &[usize], harmonic: &[f64]) -> Vec<[f64; 3]> {
-        assert_eq!(harmonic.len(), self.harmonic_len(), "a vector in harmonic space");
-        let (n, group_len) = (self.n_sectors(), self.group_len());
-        let phases = &self.shared.phases;
-        let displacement = |&node: &usize| {
-            let site = self.site(node);
-            let mut u = [0.0; 3];
-            for k in 0..phases.n_harmonics() {
-                let [cos, sin] = phases.of(k, site.halves);
-                let start = (k / LANES) * group_len + 6 * LANES * site.place + k % LANES;
-                let at = |part: usize| harmonic[start + part * LANES];
-                // Harmonics stand for their conjugates as well, but for those that are their own.
-                let weight = if k == 0 || 2 * k == n { 1.0 } else { 2.0 };
-                u[0] += weight * (cos * at(0) - sin * at(1));
-                u[1] -= weight * (cos * at(3) + sin * at(2));
-                u[2] += weight * (cos * at(4) - sin * at(5));
-            }
-            let [r, t, z] = u.map(|u| u / n as f64);
-            let [c, s] = site.direction;
-            [c * r - s * t, s * r + c * t, z]
-        };
-        nodes.par_iter().with_min_len(8).map(displacement).collect()
     }
 
     fn site(&self, node: usize) -> NodeSite {

@@ -16,6 +16,7 @@ use rayon::prelude::*;
 
 use super::phases::LANES;
 use super::ring::{ABSENT, CyclicRing};
+use super::shared::AtPlaces;
 use crate::permutation::invert;
 
 /// Section nodes transformed as one task.
@@ -77,14 +78,14 @@ impl CyclicRing {
     /// Overwrites the harmonics of the nodes at `places` with their spectra, `[places][3][n_harmonics]`.
     pub(super) fn collect(&self, places: &[usize], spectra: &[Spectrum], harmonic: &mut [f64]) {
         assert_eq!(harmonic.len(), self.harmonic_len(), "a vector in harmonic space");
-        let n_harmonics = self.shared.phases.n_harmonics();
+        let (n_harmonics, first) = (self.shared.phases.n_harmonics(), self.own_groups().start);
         harmonic
             .par_chunks_mut(self.group_len())
             .enumerate()
-            .for_each(|(group, lanes)| collect_group(group, n_harmonics, (places, spectra), lanes));
+            .for_each(|(i, lanes)| collect_group(first + i, n_harmonics, (places, spectra), lanes));
     }
 
-    /// Nodal vector (Cartesian, `[n]`) of the harmonics `harmonic`, `[harmonic_len()]`.
+    /// Nodal vector (Cartesian, `[n]`) of the harmonics `harmonic`, `[harmonic_len()]`. Collective.
     ///
     /// # Panics
     /// When the lengths are others.
@@ -110,7 +111,7 @@ impl CyclicRing {
             });
     }
 
-    /// The same for the nodes of `part` alone; other nodes keep their values.
+    /// The same for the nodes of `part` alone; other nodes keep their values. Collective.
     ///
     /// # Panics
     /// When the lengths are others.
@@ -185,37 +186,23 @@ impl CyclicRing {
         SectionPart { places, numbers }
     }
 
-    /// Cylindrical components of the nodes at `places`, `[places][3][n_sectors]`.
+    /// Cylindrical components of the nodes at `places`, `[places][3][n_sectors]`. Collective.
     pub(super) fn restore_places(&self, places: &[usize], harmonic: &[f64]) -> Vec<f64> {
-        assert_eq!(harmonic.len(), self.harmonic_len(), "a vector in harmonic space");
         let n = self.n_sectors();
         let mut components = vec![0.0; 3 * n * places.len()];
+        let all = self.at_places(places, harmonic);
         components
-            .par_chunks_mut(3 * TASK * n)
+            .par_chunks_mut((3 * TASK * n).max(1))
             .zip(places.par_chunks(TASK))
-            .for_each(|(components, places)| self.restore_nodes(places, harmonic, components));
+            .enumerate()
+            .for_each(|(task, (components, places))| {
+                self.restore_nodes((TASK * task, places), &all, components);
+            });
         components
     }
 
-    /// The nodal scalar product of two vectors in harmonic space (Parseval), in a fixed order.
-    ///
-    /// # Panics
-    /// When the lengths are others.
-    pub fn harmonic_dot(&self, a: &[f64], b: &[f64]) -> f64 {
-        assert_eq!(a.len(), self.harmonic_len(), "a vector in harmonic space");
-        assert_eq!(b.len(), self.harmonic_len(), "a vector in harmonic space");
-        let len = self.group_len().max(1);
-        // Groups in parallel, their sums in order.
-        let sums: Vec<f64> = a
-            .par_chunks_exact(len)
-            .zip(b.par_chunks_exact(len))
-            .enumerate()
-            .map(|(group, (a, b))| self.group_dot(group, a, b))
-            .collect();
-        sums.iter().sum()
-    }
-
-    /// One group's part of the scalar product, of its part of two vectors, `[low_len()]` each.
+    /// One group's part of the nodal scalar product of two vectors in harmonic space (Parseval), of its part of them,
+    /// `[low_len()]` each.
     pub fn group_dot(&self, group: usize, a: &[f64], b: &[f64]) -> f64 {
         let n = self.n_sectors();
         let mut sums = [0.0; LANES];
@@ -288,8 +275,9 @@ impl CyclicRing {
         amplitude * Complex::new(cos, sin)
     }
 
-    /// Cylindrical components of the nodes at `places`, `[places][3][n_sectors]`.
-    fn restore_nodes(&self, places: &[usize], harmonic: &[f64], components: &mut [f64]) {
+    /// Cylindrical components of the nodes at `places`, `[places][3][n_sectors]`, of which the first one is the `first`
+    /// of those whose harmonics are known.
+    fn restore_nodes(&self, (first, places): (usize, &[usize]), all: &AtPlaces<'_>, components: &mut [f64]) {
         let shared = &self.shared;
         let n = self.n_sectors();
         let mut spectrum = shared.inverse.make_input_vec();
@@ -297,8 +285,7 @@ impl CyclicRing {
         for (i, line) in components.chunks_exact_mut(n).enumerate() {
             let (place, component) = (places[i / 3], i % 3);
             for (k, value) in spectrum.iter_mut().enumerate() {
-                let start = (k / LANES) * self.group_len() + 2 * LANES * (3 * place + component) + k % LANES;
-                let w = Complex::new(harmonic[start], harmonic[start + LANES]);
+                let w = all.harmonic(k, (first + i / 3, place), component);
                 let w = if component == 1 {
                     Complex::new(-w.im, w.re)
                 } else {

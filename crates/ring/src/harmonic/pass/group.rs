@@ -4,7 +4,7 @@
 use solver::cyclic::PartHarmonics;
 
 use super::super::space::FrameLoads;
-use super::{Cow, FrameTurn, Increment, KnownLoad, Parts, Pass};
+use super::{FrameTurn, KnownLoad, Parts, Pass};
 use crate::state::within_part;
 use crate::vectors::{add_part, combine_part};
 
@@ -27,48 +27,20 @@ impl<'a> Pass<'a> {
         (load, self.turning(known.turn))
     }
 
-    /// The whole increment of a ring that ranks share.
-    pub(super) fn whole_if_shared<'i>(&self, increment: Increment<'i>) -> Increment<'i> {
-        match increment.forces {
-            Some((loads, border)) if self.factor.solver.is_shared() => {
-                let dw = self.factor.finish((loads, border), &increment.rest);
-                Increment {
-                    forces: None,
-                    rest: Cow::Owned(dw),
-                }
-            }
-            forces => Increment { forces, ..increment },
-        }
-    }
-
-    /// The first half of S^-1 of a ring that ranks share.
-    pub(super) fn begin_if_shared(&self, side: &mut [f64]) {
-        if self.factor.solver.is_shared() {
-            self.factor.begin_in_place(side);
-        }
-    }
-
-    /// The first half of S^-1 of one group, but of a ring that ranks share.
+    /// The first half of S^-1 of one group.
     pub(super) fn begin_part(&self, group: usize, part: &mut [f64]) {
-        if !self.factor.solver.is_shared() {
-            let (harmonics, border) = part.split_at_mut(self.space.ring.low_len());
-            self.factor.solver.begin_group(group, harmonics, border);
-        }
+        let (harmonics, border) = part.split_at_mut(self.space.ring.low_len());
+        self.factor.solver.begin_group(group, harmonics, border);
     }
 
-    /// The increment: the second half of S^-1 of the first half of forces and of the predictor `rest`; without forces
-    /// `rest` itself.
+    /// The increment: the second half of S^-1 of the first half of forces and of the predictor `rest`.
     pub(super) fn increment_part(
         &self,
         group: usize,
-        forces: &Option<(PartHarmonics<'_>, Vec<f64>)>,
+        (loads, border): &(PartHarmonics<'_>, Vec<f64>),
         rest: &[f64],
         dw: &mut [f64],
     ) {
-        let Some((loads, border)) = forces else {
-            dw.copy_from_slice(rest);
-            return;
-        };
         dw.fill(0.0);
         let (harmonics, rows) = dw.split_at_mut(self.space.ring.low_len());
         loads.write_group(group, harmonics);
@@ -97,18 +69,8 @@ impl<'a> Pass<'a> {
         self.space.frame_part(turning, group, motion, field, load);
     }
 
-    /// M v and K w into `mv` and `kw`; twice the energies, that of K without the round-off of rigid motions.
-    pub(super) fn products(&self, group: usize, [w, v]: [&[f64]; 2], [mv, kw]: [&mut [f64]; 2]) -> [f64; 2] {
-        let space = self.space;
-        space.mass.group_product(group, v, mv);
-        space.stiffness.group_product(group, w, kw);
-        let strained = space.strained_part(group, w);
-        let strain = space.part_dot(group, &strained, kw) + space.residual_energy(group, w);
-        [space.part_dot(group, v, mv), strain]
-    }
-
     /// The first half of S^-1 of the known loads of the next step, M (m0 v + m1 a) + K (k0 v + k1 a - w) + load +
-    /// inertia, into `solved`; `mv` and `kw` are the products of [`Pass::products`], and are overwritten.
+    /// inertia, into `solved`; `mv` and `kw` are the products of [`super::super::space::HarmonicSpace::products`], and are overwritten.
     pub(super) fn predict_part(
         &self,
         group: usize,

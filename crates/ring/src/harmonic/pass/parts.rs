@@ -1,5 +1,5 @@
 //! Vectors of a ring by groups of harmonics, each group's part one slice: the first with the rows of the border, of
-//! which there is a copy.
+//! which there is a copy. Of a ring that ranks share, each has its own groups, and all have the rows of the border.
 
 use rayon::prelude::*;
 
@@ -7,9 +7,11 @@ use super::super::space::HarmonicSpace;
 
 /// A vector that is read.
 pub(in super::super) struct Parts<'a> {
-    whole: &'a [f64],
-    /// The first group with the border.
+    own: &'a [f64],
+    /// The first group with the border; empty where another rank has it.
     first: Vec<f64>,
+    /// The first of the own groups.
+    start: usize,
     low: usize,
 }
 
@@ -18,56 +20,78 @@ impl Parts<'_> {
     pub fn of(&self, group: usize) -> &[f64] {
         match group {
             0 => &self.first,
-            _ => &self.whole[self.low * group..][..self.low],
+            _ => &self.own[self.low * (group - self.start)..][..self.low],
         }
     }
 }
 
 impl HarmonicSpace {
     /// A vector by groups.
-    pub(in super::super) fn parts<'a>(&self, whole: &'a [f64]) -> Parts<'a> {
-        let (low, len) = (self.ring.low_len(), self.ring.harmonic_len());
+    pub(in super::super) fn parts<'a>(&self, own: &'a [f64]) -> Parts<'a> {
         Parts {
-            first: [&whole[..low], &whole[len..]].concat(),
-            whole,
-            low,
+            first: match self.ring.has_first_group() {
+                true => self.low_of(own),
+                false => Vec::new(),
+            },
+            own,
+            start: self.ring.own_groups().start,
+            low: self.ring.low_len(),
         }
     }
 
-    /// Does `work` for each group, given by its number, with B buffers of its length and with its parts of the
-    /// vectors that are written; of empty vectors they are empty. What it returns comes in the order of the groups.
-    pub(in super::super) fn over_groups<const W: usize, const B: usize, T: Send>(
+    /// Does `work` for each group of this rank, given by its number, with B buffers of its length and with its parts of
+    /// the vectors that are written; of empty vectors they are empty. Returns the sums over all groups of what it
+    /// returns. Collective.
+    pub(in super::super) fn over_groups<const W: usize, const B: usize, const K: usize>(
         &self,
         mut vectors: [&mut [f64]; W],
-        work: impl Fn(usize, [&mut [f64]; B], [&mut [f64]; W]) -> T + Sync,
-    ) -> Vec<T> {
-        let (low, len) = (self.ring.low_len(), self.ring.harmonic_len());
-        let n_groups = len.checked_div(low).unwrap_or(0);
-        let first_len = self.part_len(0);
+        work: impl Fn(usize, [&mut [f64]; B], [&mut [f64]; W]) -> [f64; K] + Sync,
+    ) -> [f64; K] {
+        let (low, groups) = (self.ring.low_len(), self.ring.own_groups());
+        let (first_len, n_first) = (self.part_len(0), usize::from(self.ring.has_first_group()));
         let mut first = vectors.each_ref().map(|x| vec![0.0; first_len.min(x.len())]);
-        let mut outs: Vec<[&mut [f64]; W]> = Vec::with_capacity(n_groups);
-        outs.push(first.each_mut().map(Vec::as_mut_slice));
-        outs.resize_with(n_groups, || [(); W].map(|()| Default::default()));
+        let mut outs: Vec<[&mut [f64]; W]> = Vec::with_capacity(groups.len());
+        outs.resize_with(groups.len(), || [(); W].map(|()| Default::default()));
         for (which, vector) in vectors.iter_mut().enumerate() {
             let parts = outs.iter_mut().zip(vector.chunks_exact_mut(low.max(1)));
-            parts.skip(1).for_each(|(out, part)| out[which] = part);
+            parts.skip(n_first).for_each(|(out, part)| out[which] = part);
         }
-        let found = outs
+        if n_first > 0 {
+            outs[0] = first.each_mut().map(Vec::as_mut_slice);
+        }
+        let found: Vec<[f64; K]> = outs
             .into_par_iter()
-            .enumerate()
+            .zip(groups)
             .map_init(
                 || [(); B].map(|()| vec![0.0; first_len]),
-                |buffers, (group, out)| {
+                |buffers, (out, group)| {
                     let len = self.part_len(group);
                     work(group, buffers.each_mut().map(|b| &mut b[..len]), out)
                 },
             )
             .collect();
         let written = vectors.into_iter().zip(&first).filter(|(x, _)| !x.is_empty());
+        self.put_first(written);
+        self.ring.sum_groups(&found)
+    }
+
+    /// Puts first groups with the border, which only their rank knows, into vectors; all ranks get the border.
+    fn put_first<'a>(&self, written: impl Iterator<Item = (&'a mut [f64], &'a Vec<f64>)>) {
+        let (low, len) = (self.ring.low_len(), self.ring.harmonic_len());
+        let (mut vectors, mut border) = (Vec::new(), Vec::new());
         for (vector, first) in written {
-            vector[..low].copy_from_slice(&first[..low]);
-            vector[len..].copy_from_slice(&first[low..]);
+            let (harmonics, rows) = first.split_at(low);
+            if self.ring.has_first_group() {
+                vector[..low].copy_from_slice(harmonics);
+            }
+            border.extend_from_slice(rows);
+            vectors.push(&mut vector[len..]);
         }
-        found
+        self.ring.share_first(&mut border);
+        let rows = border.chunks_exact(self.n_shaft.max(1));
+        vectors
+            .into_iter()
+            .zip(rows)
+            .for_each(|(to, rows)| to.copy_from_slice(rows));
     }
 }
