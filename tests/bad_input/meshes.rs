@@ -211,6 +211,33 @@ fn rings_that_are_none() -> Vec<Case> {
             ],
         ),
         (
+            "an element that stands twice, its nodes in another order",
+            rebuilt(|m| {
+                let grouped: Vec<usize> = m.groups.values().flatten().map(|facet| facet.element).collect();
+                let inside = (0..m.n_elements()).find(|e| !grouped.contains(e)).unwrap();
+                let mut copy = m.element(inside).to_vec();
+                copy[..4].rotate_left(1);
+                copy[4..].rotate_left(1);
+                m.connectivity.extend(copy);
+            }),
+            &[
+                "have the same corners, so the body would be twice as stiff and heavy there; expected each element \
+                 once: remove the copies, in gmsh by `gmsh.model.mesh.removeDuplicateElements()`",
+            ],
+        ),
+        (
+            "a facet of the raceway in the bore",
+            rebuilt(|m| {
+                let facet = m.group("raceway")[0];
+                m.groups.get_mut("bore").unwrap().push(facet);
+            }),
+            &[
+                "error: inner.msh: a face of element ",
+                "is in group \"raceway\" and in group \"bore\"; expected each in one of them, as what holds the \
+                 ring would hold its raceway there",
+            ],
+        ),
+        (
             "two rings",
             rebuilt(two_parts),
             &[

@@ -5,7 +5,7 @@ use std::ops::Range;
 use std::time::Instant;
 
 use fem::Material;
-use mesh::{Mesh, Origin};
+use mesh::{Coverage, CylinderPart, Mesh, Origin};
 use rayon::prelude::*;
 use solver::{LinearSolver, SolverError, SparseCholesky, Symbolic, angular_dissection, expand};
 use sprs::CsMat;
@@ -21,6 +21,10 @@ use crate::seat::SeatFunctions;
 
 /// Columns that are solved for together: a factor is read once for them. Fixed, so that threads change no bit.
 const BLOCK: usize = 16;
+
+/// Distance from the cylinder of a seat within which a node is on it, over its radius.
+const ON_SEAT: f64 = 1e-4;
+
 /// A held elastic body, factored.
 pub struct Surrounding {
     /// Its name.
@@ -41,6 +45,8 @@ pub struct Surrounding {
     pub n_dofs: usize,
     /// Bytes of the factor, the functionals and the flexibility.
     pub bytes: usize,
+    /// Seats of a mesh that lack facets, and what they have of their cylinder between their ends.
+    pub gaps: Vec<(String, Coverage)>,
     /// What its numbers would mean, of a body of matrices.
     pub apparent: Option<Apparent>,
     /// How a shaft carries it; None of a body that stands.
@@ -111,6 +117,7 @@ impl Surrounding {
             clique: mesh.kind.n_nodes(),
         };
         let mut body = held.condense(joints, start)?;
+        body.gaps = seats.iter().filter_map(|seat| gap(&mesh, &seat.name)).collect();
         body.mesh = Some((mesh, material));
         Ok(body)
     }
@@ -224,6 +231,7 @@ impl Unfactored<'_> {
         let mut body = Surrounding {
             name: self.name,
             mesh: None,
+            gaps: Vec::new(),
             apparent: None,
             carried: None,
             loads: None,
@@ -380,6 +388,13 @@ impl Surrounding {
         }
         self.free.iter().map(|&dof| load[dof]).collect()
     }
+}
+
+/// What a seat has of its cylinder between its ends, where it lacks facets.
+fn gap(mesh: &Mesh, group: &str) -> Option<(String, Coverage)> {
+    let band = CylinderPart::of_group(mesh, group);
+    let found = mesh::coverage(mesh, group, &band, ON_SEAT * band.cylinder.radius);
+    found.map(|coverage| (group.to_string(), coverage))
 }
 
 fn require_group(body: &str, mesh: &Mesh, group: &str, key: &'static str) -> Result<(), SurroundingError> {

@@ -44,9 +44,23 @@ impl Patch {
         Ok(Patch::of_sums(surface, &sums, shape, elastic))
     }
 
+    /// The same with weights of the slope, the growth of the groove centre's motion [radial, axial] with the azimuth,
+    /// 1/rad.
+    pub fn with_slope(
+        surface: &RacewaySurface,
+        nodes: &NodePositions,
+        rule: &PressureRule,
+        shape: PatchShape,
+        elastic: Elastic,
+    ) -> Result<(Patch, NodalWeights), ContactError> {
+        let (sums, slopes) = NodeSums::with_slopes(surface, nodes, rule, shape)?;
+        let slope = slope_weights(surface, (&sums, &slopes), shape.azimuth);
+        Ok((Patch::of_sums(surface, &sums, shape, elastic), slope))
+    }
+
     /// The same of a free ball, with two more weights: of traction, the mean motion of the patch along the rolling
     /// direction t and along q = n x t, n the normal into the ring, which spread forces by the same pressure; and of
-    /// the slope, the growth of the groove centre's motion [radial, axial] with the azimuth, 1/rad.
+    /// the slope.
     pub fn of_free_ball(
         surface: &RacewaySurface,
         nodes: &NodePositions,

@@ -12,8 +12,7 @@
 //! that go round along with them, more slowly than they do, as damping in a rotor does.
 //!
 //! d/dpsi is that of the trigonometric polynomial through the balls ([`course_slopes`]). It is exact where a shaft
-//! moves or tilts on three or more balls alike, and leaves out that matrices change as single balls pass. Elastic rings
-//! give way without it, as in motion.
+//! moves or tilts on three or more balls alike, and leaves out that matrices change as single balls pass.
 
 use crate::kinematics::course_slopes;
 use crate::stiffness::{Linearisation, N_SHAFT, is_held};
@@ -85,7 +84,7 @@ impl Linearisation {
             for (other, met) in self.closing.iter().enumerate().skip(site % 2).step_by(2) {
                 let rate = contact.damping * speed * slopes[balls * (site / 2) + other / 2];
                 for &(row, a) in contact.rows.iter().chain(&contact.of_ring) {
-                    for &(column, b) in &met.rows {
+                    for &(column, b) in met.rows.iter().chain(&met.of_ring) {
                         self.stiffness[n * row + column] += rate * a * b;
                     }
                 }

@@ -2,14 +2,17 @@
 
 use contact::Side;
 use dynamics::interactions::contact_damping::{ContactDamping, coefficient};
-use dynamics::kinematics::{Kinematics, Speed};
+use dynamics::kinematics::{Kinematics, RingSpeeds, Speed};
 use dynamics::model::ShaftInertia;
 use dynamics::motion::{Motion, MotionSettings, StepCache};
 use dynamics::whirl::{TurningShaft, Whirl, WhirlMode, turning_inertia};
-use dynamics::{DampingLaws, Linearisation, Model, ShaftDof, StaticSolution, StaticSolver};
+use dynamics::{
+    ContactMode, DampingLaws, Hold, Linearisation, Model, ShaftDof, StaticSolution, StaticSolver,
+};
 
 use crate::support::lines::{PUSH, Push, line_at, line_near, of_middle_rule};
-use crate::support::{Case, equilibrium};
+use crate::support::rings::Level;
+use crate::support::{Case, equilibrium, states_from};
 
 const SPEED: f64 = 4000.0;
 const DAMPING: ContactDamping = ContactDamping {
@@ -214,6 +217,43 @@ fn of_passing(time: f64) -> (f64, f64) {
         force -= pressed * at.contact(Side::Inner).contact_angle_rad.cos() * at.azimuth_rad.sin();
     }
     (force / stiffness[1][1], loss)
+}
+
+/// Wrong: damping on elastic rings, which are measured in frames that turn with them, would go round with their speed
+/// besides that of the balls: a shaft would leave the direction of its load several times as far. Elastic rings at four
+/// pairs of speeds, in time and by the matrices of the equilibrium.
+#[test]
+fn damping_goes_round_with_the_balls_along_elastic_rings() {
+    let mut model = Case {
+        radial: 300.0,
+        ..Case::axial(1000.0)
+    }
+    .flexible(ContactMode::Patch, Level::hex8(36, 4, 1, 1), Hold::Clamped);
+    model.shaft_mass = 1.0;
+    let damping = ContactDamping {
+        coefficient: 2e4,
+        full_approach: 1e-7,
+    };
+    let mut solver = StaticSolver::new(&model).unwrap();
+    let start = solver.solve(&model, None).unwrap();
+    let linear = || Linearisation::new(&model, &solver, &start, laws(Some(damping))).unwrap();
+    for speeds in [[600.0, 0.0], [0.0, 600.0], [600.0, -600.0], [600.0, 600.0]] {
+        let orbit = Kinematics::new(&model.geometry, [0.0; 2]).of_cage(speeds);
+        let (stiffness, _) = linear().passing(orbit).of_shaft().unwrap();
+        let expected = -stiffness[1][0] / stiffness[1][1];
+        let [inner, outer] = speeds.map(Speed::constant);
+        let settings = MotionSettings {
+            contact_damping: Some(damping),
+            ..MotionSettings::conserving(1e-5, RingSpeeds { inner, outer })
+        };
+        let motion = Motion::new(&model, settings).unwrap();
+        let states = states_from(&motion, motion.start(&start), 500);
+        let late = &states[250..];
+        let [x, y] = [0, 1].map(|dof| late.iter().map(|state| state.shaft[dof]).sum::<f64>());
+        println!("{speeds:?}: {:.5}, {expected:.5}", y / x);
+        assert!((y / x - expected).abs() < 1e-3 * expected.abs(), "{speeds:?}");
+        assert!(states[500].ledger.defect().abs() < 1e-9 * states[500].ledger.largest);
+    }
 }
 
 /// Wrong: rotor dynamics would be given damping that stands, of a rotor that is stable at all speeds. A damping c that

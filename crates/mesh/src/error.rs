@@ -174,6 +174,35 @@ pub enum MeshError {
         /// Kinds and their counts.
         found: String,
     },
+    /// A facet in two groups that exclude each other.
+    #[error(
+        "{path}: a face of element {element} is in group \"{first}\" and in group \"{second}\"; expected each in \
+         one of them, as what holds the ring would hold its raceway there"
+    )]
+    InBothGroups {
+        /// The file.
+        path: PathBuf,
+        /// Tag of the volume element.
+        element: u64,
+        /// One group.
+        first: String,
+        /// The other.
+        second: String,
+    },
+    /// Two elements at one place.
+    #[error(
+        "{path}: elements {first} and {second} have the same corners, so the body would be twice as stiff and heavy \
+         there; expected each element once: remove the copies, in gmsh by \
+         `gmsh.model.mesh.removeDuplicateElements()`"
+    )]
+    SameCorners {
+        /// The file.
+        path: PathBuf,
+        /// Tag of the first element.
+        first: u64,
+        /// Tag of the second.
+        second: u64,
+    },
     /// A named boundary element that is not a boundary of the body.
     #[error(
         "{path}: element {element} of group \"{group}\" is {problem}; expected a boundary face of exactly one element \

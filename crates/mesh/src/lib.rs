@@ -21,7 +21,8 @@ pub mod section;
 pub mod torus;
 
 pub use check::{
-    Coverage, Cylinder, Revolved, check_mesh, check_torus, check_unit, check_whole, coverage, require_groups,
+    Coverage, Cylinder, CylinderPart, Revolved, check_mesh, check_torus, check_unit, check_whole, coverage,
+    require_apart, require_groups,
 };
 pub use element::{ElementKind, FacetKind};
 pub use error::{MeshError, Place};

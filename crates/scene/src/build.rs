@@ -260,6 +260,7 @@ fn ring(
     let (mesh, origin) = mesh::read_msh_with_origin(&body.mesh, body.mesh_unit)?;
     mesh::check_unit(&mesh, &origin, diameter)?;
     mesh::require_groups(&mesh, &body.mesh, &[RACEWAY_GROUP, held_group])?;
+    mesh::require_apart(&mesh, &origin, [RACEWAY_GROUP, held_group])?;
     let groove = groove(geometry, side, body.groove_z);
     let torus = torus(&groove);
     mesh::check_torus(

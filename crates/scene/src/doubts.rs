@@ -14,6 +14,7 @@ use dynamics::kinematics::BallSpeeds;
 use dynamics::mounting::RingTemperature;
 use dynamics::{Model, RingModel};
 use input::{DENSITY, LENGTH, Quantity, STRESS};
+use mesh::Coverage;
 
 use crate::build::{coverages, torus};
 use crate::coarse_round::reaches_next_ball;
@@ -71,6 +72,7 @@ pub fn doubts(scene: &Scene, model: &Model) -> Vec<String> {
         lines.push(OUTER_CONTROL.to_string());
     }
     lines.extend(odd_matrices(model));
+    lines.extend(seats_with_gaps(model));
     lines.extend(unusual_stiffnesses(&scene.contact, &scene.bearing, materials));
     lines.extend(unresolved(scene, &model.geometry, model.surfaces.half_widths));
     lines.extend(filtered(scene, model));
@@ -84,10 +86,31 @@ pub fn doubts(scene: &Scene, model: &Model) -> Vec<String> {
 
 /// Says which bodies of matrices are like no solid.
 fn odd_matrices(model: &Model) -> Vec<String> {
-    let tie = |side| model.tied(side).and_then(|ring| ring.tie.as_ref());
-    let bodies = Side::BOTH.into_iter().filter_map(|side| tie(side)?.body.as_ref());
     let doubts = |body: &Surrounding| Some(body.apparent?.doubts(&body.name));
-    bodies.filter_map(|body| doubts(body)).flatten().collect()
+    bodies(model).filter_map(doubts).flatten().collect()
+}
+
+/// Bodies in which rings of the bearing sit.
+fn bodies(model: &Model) -> impl Iterator<Item = &Surrounding> {
+    let tie = |side| model.tied(side).and_then(|ring| ring.tie.as_ref());
+    Side::BOTH
+        .into_iter()
+        .filter_map(move |side| tie(side)?.body.as_deref())
+}
+
+/// Says which seats of bodies lack facets of their cylinder.
+fn seats_with_gaps(model: &Model) -> Vec<String> {
+    let gap = |(body, (group, coverage)): (&Surrounding, &(String, Coverage))| {
+        format!(
+            "body {:?}: group \"{group}\" of its seat has {:.1} % of the circle and {:.1} % of the area that the mesh \
+             has on this cylinder between the ends of the seat; the ring is held by that part alone",
+            body.name,
+            100.0 * coverage.circle,
+            100.0 * coverage.area
+        )
+    };
+    let gaps = bodies(model).flat_map(|body| body.gaps.iter().map(move |seat| (body, seat)));
+    gaps.map(gap).collect()
 }
 
 /// Says how weakly ellipses feel the shortest waves of a ring, or of a ball.

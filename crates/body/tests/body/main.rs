@@ -1,5 +1,6 @@
 //! Bodies by themselves: closed forms of a tube, bodies from matrices, and every message.
 
+mod gaps;
 mod loads;
 mod matrices;
 mod memory;

@@ -8,7 +8,7 @@ use ring::ElasticStep;
 use super::free_state::{ContactTraction, FreeState};
 use super::ledger::FrictionLedger;
 use super::part::RingSteps;
-use super::place::{Course, PassedRings};
+use super::place::Course;
 use super::ring_course::RingCourse;
 use super::run::Motion;
 use super::solve::StepSolution;
@@ -145,18 +145,6 @@ impl Motion<'_> {
             start: span.at(0.0),
             end: span.at(1.0),
         }
-    }
-
-    /// How balls on the course of the cage pass an inner ring that goes on with the shaft as that moves, and an outer
-    /// one that stays; None where nothing damps.
-    fn passed(&self, state: &MotionState, span: PartSpan) -> Option<PassedRings> {
-        self.settings.contact_damping.as_ref()?;
-        let ahead = (1.0 - self.settings.integrator.alpha_f) * span.dt;
-        let shaft = std::array::from_fn(|i| state.shaft[i] + ahead * state.shaft_velocity[i]);
-        let [from, to] = [0.0, 1.0].map(|share| self.cage_angle(span.at(share)));
-        let orbit = (to - from) / span.dt;
-        let carriers = [shaft, [0.0; 5]];
-        (orbit != 0.0).then_some(PassedRings { orbit, carriers })
     }
 
     /// Acceleration of all that falls, m/s^2.

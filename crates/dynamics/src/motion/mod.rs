@@ -29,6 +29,7 @@ pub mod ledger;
 mod limits;
 mod mass_load;
 mod part;
+mod passing;
 mod place;
 mod ports;
 pub mod report;

@@ -15,7 +15,7 @@ use crate::bodies::{FlatBody, FrameInertia, Inertia, LargeTilt, Name, ShaftStart
 use crate::effects::{Loads, Now};
 use crate::error::DynamicsError;
 use crate::interactions::discrete_gradient::MeanForce;
-use crate::interactions::raceway_contact::{Means, Site};
+use crate::interactions::raceway_contact::Means;
 use crate::system::Interval;
 
 /// Force scale of a bearing on which nothing acts, N.
@@ -94,10 +94,12 @@ impl Motion<'_> {
         &self,
         state: &MotionState,
         span: PartSpan,
-        sites: Vec<Site>,
+        (placing, places): (&Placing, &[PatchPlace]),
         rings: &RingSteps<'_>,
         loads: &Loads,
     ) -> Result<BearingParts, DynamicsError> {
+        let mut sites = placing.sites.clone();
+        self.pass_elastic((state, span), places, rings, &mut sites);
         let ports = |side: Side| {
             let step = rings[side.index()].as_deref();
             step.map(|step| self.ports(state, span, side, step)).transpose()

@@ -13,9 +13,10 @@
 use std::borrow::Cow;
 
 use contact::patch_shape::PatchShape;
-use contact::{BySide, Meridian, NodalWeights, Patch, Side};
+use contact::{NodalWeights, Patch, Side};
 use rayon::prelude::*;
 
+use super::passing::PassedRings;
 use super::run::Motion;
 use super::solve::StepSolution;
 use super::state::{MotionState, PatchPlace};
@@ -60,26 +61,6 @@ pub(super) struct Course {
     pub end: f64,
 }
 
-/// How balls pass along rings that what carries them displaces.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct PassedRings {
-    /// Angular speed of the balls round the axis, rad/s.
-    pub orbit: f64,
-    /// Displacement of both carriers at the weighted time, as it is expected.
-    pub carriers: BySide<[f64; 5]>,
-}
-
-impl PassedRings {
-    /// How fast a contact at a contact angle closes, m/s: l is to the ball, so it shrinks where the groove comes near.
-    fn rate(&self, site: &Site, angle: f64) -> f64 {
-        let growth = site.carrier_growth().into_iter();
-        let growth = growth.zip(self.carriers[site.side.index()]);
-        let moved = growth.fold(Meridian::default(), |sum, (row, x)| sum + row.map(|r| r * x));
-        let normal = Meridian::new(angle.cos(), angle.sin()).map(|x| site.side.sign() * x);
-        -self.orbit * normal.dot(moved)
-    }
-}
-
 /// The mounting in the middle of a part and, where temperatures change, at its ends.
 struct PartMounting<'m> {
     middle: Cow<'m, Mounting>,
@@ -111,7 +92,7 @@ pub(super) struct Placing {
     pub sites: Vec<Site>,
     /// Nodal weights of the contacts on each flexible ring, those of a contact together.
     pub feet: [Vec<NodalWeights>; 2],
-    /// Nodal weights of the slopes of free balls on each flexible ring.
+    /// Nodal weights of the slopes of each flexible ring along the way of balls, where they are asked for.
     pub slopes: [Vec<NodalWeights>; 2],
     /// Half of every patch along the groove, rad, by site.
     half_angles: Vec<f64>,
@@ -212,11 +193,11 @@ impl Motion<'_> {
         let (ball, side) = (index / 2, Side::BOTH[index % 2]);
         let azimuth = course.azimuths[ball];
         let mut site = Site::new(model, &mounting.middle, ball, side, azimuth);
-        if let Some(passed) = &course.passed {
-            site.passing = passed.rate(&site, angle);
-        }
         let (Some(ring), Some(moving)) = (model.ring(side), &self.rings[side.index()]) else {
             mounting.place(model, &mut site, None);
+            if let Some(passed) = &course.passed {
+                site.passing = passed.rigid(&site, angle);
+            }
             return Ok(Placed {
                 site,
                 weights: Vec::new(),
@@ -236,6 +217,9 @@ impl Motion<'_> {
         let (patch, [traction, slope]) = if course.is_free {
             let (patch, more) = Patch::of_free_ball(surface, nodes, rule, shape, material)?;
             (patch, more.map(Some))
+        } else if course.passed.is_some() {
+            let (patch, slope) = Patch::with_slope(surface, nodes, rule, shape, material)?;
+            (patch, [None, Some(slope)])
         } else {
             (Patch::new(surface, nodes, rule, shape, material)?, [None, None])
         };

@@ -114,7 +114,7 @@ impl Motion<'_> {
         let known = longest(rings.iter().flatten().map(|step| step.laps()));
         report.laps.add(BLOCK_SOLVE, clock.lap() - known.total());
         report.laps.merge(&known);
-        let parts = self.parts(state, span, placing.sites.clone(), &rings, &expected.loads)?;
+        let parts = self.parts(state, span, (&placing, &places), &rings, &expected.loads)?;
         Ok(StepPart {
             span,
             places,
@@ -184,8 +184,8 @@ impl Motion<'_> {
         part.places = met;
         part.report.laps.add(PATCHES, part.clock.lap());
         self.move_contacts(part);
-        let sites = part.placing.sites.clone();
-        part.parts = self.parts(state, part.span, sites, &part.rings, &part.expected.loads)?;
+        let placed = (&part.placing, &part.places[..]);
+        part.parts = self.parts(state, part.span, placed, &part.rings, &part.expected.loads)?;
         Ok(false)
     }
 

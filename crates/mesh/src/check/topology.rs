@@ -1,4 +1,4 @@
-//! One node per place, and one connected body.
+//! One node per place, one element per place, and one connected body.
 
 use crate::error::MeshError;
 use crate::mesh::Mesh;
@@ -75,6 +75,30 @@ fn find_coincident(nodes: &[[f64; 3]], size: &[f64]) -> Option<(usize, usize, f6
         }
     }
     None
+}
+
+/// No two elements may have the same corners: the body would be twice as stiff and heavy there.
+pub(crate) fn check_once(mesh: &Mesh, origin: &Origin) -> Result<(), MeshError> {
+    let corners = |element: usize| {
+        let mut corners = mesh.element(element)[..mesh.kind.n_corners()].to_vec();
+        corners.sort_unstable();
+        corners
+    };
+    let lowest = |element: usize| mesh.element(element)[..mesh.kind.n_corners()].iter().min();
+    let mut order: Vec<usize> = (0..mesh.n_elements()).collect();
+    order.sort_by_key(|&element| lowest(element));
+    for at_node in order.chunk_by(|&a, &b| lowest(a) == lowest(b)) {
+        let mut at_node: Vec<(Vec<usize>, usize)> = at_node.iter().map(|&e| (corners(e), e)).collect();
+        at_node.sort_unstable();
+        if let Some(pair) = at_node.windows(2).find(|pair| pair[0].0 == pair[1].0) {
+            return Err(MeshError::SameCorners {
+                path: origin.path.clone(),
+                first: origin.element_tags[pair[0].1],
+                second: origin.element_tags[pair[1].1],
+            });
+        }
+    }
+    Ok(())
 }
 
 /// The elements must hang together by common nodes.

@@ -33,6 +33,38 @@ impl Revolved for Cylinder {
     }
 }
 
+/// A part of a cylinder about the axis z.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CylinderPart {
+    /// The cylinder.
+    pub cylinder: Cylinder,
+    /// Its ends along z, m.
+    pub ends: [f64; 2],
+}
+
+impl Revolved for CylinderPart {
+    fn distance(&self, x: [f64; 3]) -> f64 {
+        let beyond = (self.ends[0] - x[2]).max(x[2] - self.ends[1]).max(0.0);
+        self.cylinder.distance(x).hypot(beyond)
+    }
+}
+
+impl CylinderPart {
+    /// That on which a group lies.
+    pub fn of_group(mesh: &Mesh, group: &str) -> CylinderPart {
+        let z = mesh
+            .group_nodes(group)
+            .into_iter()
+            .map(|node| mesh.nodes[node][2]);
+        CylinderPart {
+            cylinder: Cylinder::of_group(mesh, group),
+            ends: z.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], z| {
+                [low.min(z), high.max(z)]
+            }),
+        }
+    }
+}
+
 impl Cylinder {
     /// That on which most corners of a group lie: the median of their radii.
     pub fn of_group(mesh: &Mesh, group: &str) -> Cylinder {

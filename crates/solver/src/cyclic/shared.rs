@@ -14,7 +14,6 @@ use fft::num_complex::Complex;
 
 use super::phases::{LANES, NODE_LEN};
 use super::ring::CyclicRing;
-use super::transform::Spectrum;
 
 /// The harmonics of a vector at some places, of all groups.
 pub(super) struct AtPlaces<'a> {
@@ -27,7 +26,7 @@ pub(super) struct AtPlaces<'a> {
 
 impl AtPlaces<'_> {
     /// Harmonic k of a component at the i-th of the places, which is `place` in the section.
-    pub(super) fn harmonic(&self, k: usize, (i, place): (usize, usize), component: usize) -> Spectrum {
+    pub(super) fn harmonic(&self, k: usize, (i, place): (usize, usize), component: usize) -> Complex<f64> {
         let node = if self.is_packed { i } else { place };
         let start = (k / LANES) * self.group_len + 2 * LANES * (3 * node + component) + k % LANES;
         Complex::new(self.numbers[start], self.numbers[start + LANES])

@@ -218,19 +218,31 @@ impl ContactStep {
         self.ring.elastic.map_or([Jet::default(); 2], of)
     }
 
-    /// Its lengths have the passing of the ball in them.
-    fn step_damping(&self) -> Option<StepDamping<'_>> {
+    /// Its damping from l at the start, m.
+    fn step_damping(&self, start: Meridian) -> Option<StepDamping<'_>> {
         let law = self.damping.as_ref()?;
         Some(StepDamping {
             law,
             dt: self.dt,
-            passing: 0.0,
+            passing: self.passing(start),
         })
+    }
+
+    /// By how much it closes in the step because its ball passes along an elastic ring, of which lengths have the
+    /// motion where the contact is in the middle of the step, m. Those on a rigid ring have the passing in them.
+    fn passing(&self, start: Meridian) -> f64 {
+        let Some(elastic) = self.ring.elastic else {
+            return 0.0;
+        };
+        let [[x, y, _], [vx, vy, _], _] = self.ball;
+        let orbit = (x * vy - y * vx) / (x * x + y * y);
+        let normal = start.map(|l| l / start.norm());
+        -(orbit - self.ring.spin[0]) * self.dt * normal.dot(Meridian::from(elastic.slope))
     }
 
     /// What damping does along the normal, from l at the start to l at the end, m.
     pub(super) fn viscous(&self, reach: [Meridian; 2]) -> Option<Viscous> {
-        let damping = self.step_damping()?;
+        let damping = self.step_damping(reach[0])?;
         Some(damping.viscous(self.touching, reach.map(Meridian::to_array)))
     }
 
@@ -241,7 +253,7 @@ impl ContactStep {
             touching: self.touching,
             sign: self.sign,
             scheme: self.scheme,
-            damping: self.step_damping(),
+            damping: self.step_damping(reach_of(&at.start)),
         };
         let surface = self.surface.as_ref()?;
         let (course, middle) = ((&at.start, &at.last), (&at.mid, &at.x));

@@ -70,7 +70,7 @@ impl<'a> Pass<'a> {
     }
 
     /// The first half of S^-1 of the known loads of the next step, M (m0 v + m1 a) + K (k0 v + k1 a - w) + load +
-    /// inertia, into `solved`; `mv` and `kw` are the products of [`super::super::space::HarmonicSpace::products`], and are overwritten.
+    /// inertia, into `solved`; `mv` and `kw` are M v and K w, and are overwritten.
     pub(super) fn predict_part(
         &self,
         group: usize,
