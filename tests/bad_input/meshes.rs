@@ -2,9 +2,9 @@
 
 use mesh::{Facet, Mesh, MshFormat, RingSide};
 
-use super::text::{changed, replaced};
+use super::text::{Text, changed, replaced};
 use super::{assert_refused, run};
-use crate::util::rings::{self, TINY};
+use crate::util::rings::{self, Level, TINY};
 use crate::util::{Dir, SCENE};
 
 /// Name, content of `inner.msh`, and the essential parts of the message.
@@ -14,6 +14,18 @@ type Case = (&'static str, Vec<u8>, &'static [&'static str]);
 fn rebuilt(change: impl FnOnce(&mut Mesh)) -> Vec<u8> {
     let mut mesh = rings::ring(RingSide::Inner, TINY);
     change(&mut mesh);
+    rings::file(&mesh, 1e-3, MshFormat::Ascii)
+}
+
+/// An element inside the ring again, its nodes in another order.
+fn an_element_twice() -> Vec<u8> {
+    let mut mesh = rings::ring(RingSide::Inner, Level { thickness: 3, ..TINY });
+    let grouped: Vec<usize> = mesh.groups.values().flatten().map(|f| f.element).collect();
+    let inside = (0..mesh.n_elements()).find(|e| !grouped.contains(e)).unwrap();
+    let mut copy = mesh.element(inside).to_vec();
+    copy[..4].rotate_left(1);
+    copy[4..].rotate_left(1);
+    mesh.connectivity.extend(copy);
     rings::file(&mesh, 1e-3, MshFormat::Ascii)
 }
 
@@ -211,15 +223,8 @@ fn rings_that_are_none() -> Vec<Case> {
             ],
         ),
         (
-            "an element that stands twice, its nodes in another order",
-            rebuilt(|m| {
-                let grouped: Vec<usize> = m.groups.values().flatten().map(|facet| facet.element).collect();
-                let inside = (0..m.n_elements()).find(|e| !grouped.contains(e)).unwrap();
-                let mut copy = m.element(inside).to_vec();
-                copy[..4].rotate_left(1);
-                copy[4..].rotate_left(1);
-                m.connectivity.extend(copy);
-            }),
+            "an element that stands twice",
+            an_element_twice(),
             &[
                 "have the same corners, so the body would be twice as stiff and heavy there; expected each element \
                  once: remove the copies, in gmsh by `gmsh.model.mesh.removeDuplicateElements()`",
@@ -227,10 +232,7 @@ fn rings_that_are_none() -> Vec<Case> {
         ),
         (
             "a facet of the raceway in the bore",
-            rebuilt(|m| {
-                let facet = m.group("raceway")[0];
-                m.groups.get_mut("bore").unwrap().push(facet);
-            }),
+            changed(Text::share_a_facet),
             &[
                 "error: inner.msh: a face of element ",
                 "is in group \"raceway\" and in group \"bore\"; expected each in one of them, as what holds the \

@@ -59,6 +59,24 @@ impl Text {
         n + 1
     }
 
+    /// Puts a facet of one surface in the place of one of the next surface.
+    pub fn share_a_facet(&mut self) {
+        let (mut line, mut firsts) = (self.section("Elements") + 2, Vec::new());
+        while !self.0[line].starts_with('$') {
+            let header: Vec<usize> = self.0[line]
+                .split_whitespace()
+                .map(|n| n.parse().unwrap())
+                .collect();
+            if header[0] == 2 {
+                firsts.push(line + 1);
+            }
+            line += 1 + header[3];
+        }
+        let (_, nodes) = self.0[firsts[0]].split_once(' ').unwrap();
+        let (tag, _) = self.0[firsts[1]].split_once(' ').unwrap();
+        self.0[firsts[1]] = format!("{tag} {nodes}");
+    }
+
     /// Gives all volume elements another type, with the first `n_nodes` of their nodes, repeated if there are more.
     pub fn retype(&mut self, gmsh_type: usize, n_nodes: usize) {
         let head = self.section("Elements") + 2;

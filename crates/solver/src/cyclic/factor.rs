@@ -359,15 +359,14 @@ impl LinearSolver for CyclicCholesky {
         if rhs.is_empty() {
             return;
         }
-        let width = self.ring.harmonic_len();
-        let mut harmonic = vec![0.0; width * n_rhs.min(COLUMNS)];
+        let mut harmonic = vec![vec![0.0; self.ring.harmonic_len()]; n_rhs.min(COLUMNS)];
         for block in rhs.chunks_mut(n * COLUMNS) {
-            let used = &mut harmonic[..width * (block.len() / n)];
-            for (nodal, w) in block.chunks_exact(n).zip(used.chunks_exact_mut(width)) {
+            let used = &mut harmonic[..block.len() / n];
+            for (nodal, w) in block.chunks_exact(n).zip(&mut *used) {
                 self.ring.to_harmonic(nodal, w);
             }
-            self.solve_harmonic(&mut used.chunks_exact_mut(width).collect::<Vec<_>>());
-            for (nodal, w) in block.chunks_exact_mut(n).zip(used.chunks_exact(width)) {
+            self.solve_harmonic(&mut used.iter_mut().map(Vec::as_mut_slice).collect::<Vec<_>>());
+            for (nodal, w) in block.chunks_exact_mut(n).zip(&*used) {
                 self.ring.from_harmonic(w, nodal);
             }
         }

@@ -257,17 +257,17 @@ fn spectra(factor: &CyclicCholesky, places: &[usize]) -> Vec<Spectrum> {
     // Only what follows the first of them in the order is needed.
     let first_place = places.iter().copied().min().unwrap_or(0);
     let mut spectra = Vec::with_capacity(n_dofs * n_dofs * n_harmonics);
-    let mut columns = vec![0.0; len * COLUMNS.min(n_dofs)];
+    let mut columns = vec![vec![0.0; len]; COLUMNS.min(n_dofs)];
     for first in (0..n_dofs).step_by(COLUMNS) {
         let forces = first..(first + COLUMNS).min(n_dofs);
-        let used = &mut columns[..len * forces.len()];
-        used.fill(0.0);
-        for (column, force) in used.chunks_exact_mut(len).zip(forces) {
+        let used = &mut columns[..forces.len()];
+        for (column, force) in used.iter_mut().zip(forces) {
+            column.fill(0.0);
             own_harmonics.clone().for_each(|k| column[index(k, force)] = 1.0);
         }
-        let mut used_columns: Vec<&mut [f64]> = used.chunks_exact_mut(len).collect();
+        let mut used_columns: Vec<&mut [f64]> = used.iter_mut().map(Vec::as_mut_slice).collect();
         factor.sweep_harmonic(&mut used_columns, |_| Sweeps::Trailing(first_place));
-        for column in used.chunks_exact(len) {
+        for column in used.iter() {
             let all = ring.at_places(places, column);
             for dof in 0..n_dofs {
                 let at = (dof / 3, places[dof / 3]);

@@ -49,7 +49,8 @@ impl HarmonicSpace {
     ) -> [f64; K] {
         let (low, groups) = (self.ring.low_len(), self.ring.own_groups());
         let (first_len, n_first) = (self.part_len(0), usize::from(self.ring.has_first_group()));
-        let mut first = vectors.each_ref().map(|x| vec![0.0; first_len.min(x.len())]);
+        let written = |x: &[f64]| if x.is_empty() { 0 } else { first_len };
+        let mut first = vectors.each_ref().map(|x| vec![0.0; written(x)]);
         let mut outs: Vec<[&mut [f64]; W]> = Vec::with_capacity(groups.len());
         outs.resize_with(groups.len(), || [(); W].map(|()| Default::default()));
         for (which, vector) in vectors.iter_mut().enumerate() {
