@@ -201,7 +201,7 @@ fn speed_of(scene: &Scene, heat: &Heat, path: &Path) -> Result<f64, Failure> {
     let speed = heat.speed.or(of_scene).filter(|speed| *speed > 0.0);
     let still = || {
         anyhow!(
-            "{}: the rings do not turn against each other, so there is no friction",
+            "{}: the rings do not turn against each other, so nothing rolls; heat is that of rolling balls",
             path.display()
         )
     };

@@ -227,7 +227,7 @@ impl Summary {
                 .collect(),
             effects: scene.effects.names(),
             dofs: sides(|i| model.rings[i].as_ref().map_or(0, |r| r.mesh.n_dofs())),
-            elements: sides(|i| model.rings[i].as_ref().map_or(0, |r| r.mesh.n_elements())),
+            elements: sides(|i| model.rings[i].as_ref().map_or(0, |r| r.n_elements())),
             energy_j: last.energies.iter().copied().collect(),
             clearance: model.mounting.report.as_ref().map(ClearanceSummary::new),
             fits: fits(model.mounting.report.as_ref()),

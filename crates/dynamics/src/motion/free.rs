@@ -252,9 +252,8 @@ impl Motion<'_> {
     /// A ring that turns at its speed over a part, and does not move else.
     pub(super) fn turning_step(&self, side: Side, span: PartSpan) -> RingStep {
         let speed = self.settings.speeds.of(side);
-        let turned = speed.angle(span.at(1.0)) - speed.angle(span.start);
         RingStep {
-            spin: [turned / span.dt, speed.at(span.at(1.0))],
+            spin: [self.frame_speed(side, span), speed.at(span.at(1.0))],
             ..RingStep::default()
         }
     }

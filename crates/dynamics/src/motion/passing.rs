@@ -53,7 +53,7 @@ impl Motion<'_> {
     }
 
     /// Mean speed of a ring's frame over a part, rad/s.
-    fn frame_speed(&self, side: Side, span: PartSpan) -> f64 {
+    pub(super) fn frame_speed(&self, side: Side, span: PartSpan) -> f64 {
         let [from, to] = [0.0, 1.0].map(|share| self.frame_angle(side, span.at(share)));
         (to - from) / span.dt
     }
