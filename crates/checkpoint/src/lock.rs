@@ -38,7 +38,7 @@ impl FolderLock {
                 let path = dir.to_path_buf();
                 return Err(CheckpointError::Locked { path, owner });
             }
-            Err(TryLockError::Error(source)) => return Err(CheckpointError::io("lock", &path)(source)),
+            Err(TryLockError::Error(source)) => return Err(not_locked(&path, source)),
         }
         let text = format!("process {} on {}\n", std::process::id(), host());
         rewrite(&mut file, &text).map_err(CheckpointError::io("write", &path))?;
@@ -111,8 +111,21 @@ pub fn writer(dir: &Path) -> Result<Option<String>, CheckpointError> {
                 .map_err(CheckpointError::io("read", &path))?;
             Ok(Some(owner.trim().to_string()))
         }
-        Err(TryLockError::Error(source)) => Err(CheckpointError::io("lock", &path)(source)),
+        Err(TryLockError::Error(source)) => Err(not_locked(&path, source)),
     }
+}
+
+/// That a file is not locked, and what to do where its file system knows no locks.
+fn not_locked(path: &Path, source: std::io::Error) -> CheckpointError {
+    let source = match source.kind() {
+        ErrorKind::Unsupported => {
+            let advice = "the file system knows no locks (flock), which keep two runs out of one folder; have it \
+                          mounted with them (Lustre: -o flock), or write to another one";
+            std::io::Error::new(source.kind(), format!("{source}; {advice}"))
+        }
+        _ => source,
+    };
+    CheckpointError::io("lock", path)(source)
 }
 
 impl Drop for FolderLock {
@@ -132,4 +145,23 @@ fn rewrite(file: &mut File, text: &str) -> std::io::Result<()> {
 fn host() -> String {
     std::fs::read_to_string("/proc/sys/kernel/hostname")
         .map_or_else(|_| "this machine".to_string(), |name| name.trim().to_string())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Wrong: who writes to a file system without locks would read a number of the system and not what to do.
+    #[test]
+    fn a_file_system_without_locks_is_named() {
+        let told = |kind: ErrorKind| not_locked(Path::new("run/.lock"), kind.into()).to_string();
+        let text = told(ErrorKind::Unsupported);
+        let advice = "the file system knows no locks (flock), which keep two runs out of one folder; have it mounted \
+                      with them (Lustre: -o flock), or write to another one";
+        assert!(
+            text.starts_with("cannot lock run/.lock: ") && text.ends_with(advice),
+            "{text}"
+        );
+        assert!(!told(ErrorKind::PermissionDenied).contains("flock"));
+    }
 }
