@@ -183,7 +183,7 @@ impl CyclicRing {
     }
 
     /// The ring whose groups of harmonics are dealt out to the ranks of `comm`, in equal runs: each factors and
-    /// solves its own, and has those of a vector in harmonic space alone ([`super::shared`]).
+    /// solves its own, and has those of a vector in harmonic space alone (`shared`).
     pub fn shared_by(self, comm: Communicator) -> CyclicRing {
         CyclicRing { comm, ..self }
     }
