@@ -342,7 +342,7 @@ impl OverInstants for March<'_> {
     }
 
     fn append_profiles(&mut self) -> Result<(), Failure> {
-        if self.scene.probes.is_empty() {
+        if self.scene.probes.profiles.is_empty() {
             return Ok(());
         }
         let (model, motion) = (self.model, self.motion);

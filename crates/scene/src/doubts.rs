@@ -102,11 +102,9 @@ fn bodies(model: &Model) -> impl Iterator<Item = &Surrounding> {
 fn seats_with_gaps(model: &Model) -> Vec<String> {
     let gap = |(body, (group, coverage)): (&Surrounding, &(String, Coverage))| {
         format!(
-            "body {:?}: group \"{group}\" of its seat has {:.1} % of the circle and {:.1} % of the area that the mesh \
-             has on this cylinder between the ends of the seat; the ring is held by that part alone",
-            body.name,
-            100.0 * coverage.circle,
-            100.0 * coverage.area
+            "body {:?}: group \"{group}\" of its seat has {coverage} that the mesh has on this cylinder between the \
+             ends of the seat; the ring is held by that part alone",
+            body.name
         )
     };
     let gaps = bodies(model).flat_map(|body| body.gaps.iter().map(move |seat| (body, seat)));
@@ -152,9 +150,7 @@ fn say_parts(ring: &RingModel, path: &str, lines: &mut Vec<String>) {
     for (group, coverage) in coverages(&ring.mesh, ring.held_group, &torus(&ring.groove)) {
         if let Some(coverage) = coverage {
             lines.push(format!(
-                "mesh {path}: group \"{group}\" has {:.1} % of the circle and {:.1} % of the area of its surface",
-                100.0 * coverage.circle,
-                100.0 * coverage.area
+                "mesh {path}: group \"{group}\" has {coverage} of its surface"
             ));
         }
     }

@@ -4,6 +4,7 @@ use contact::Meridian;
 
 use super::cage_state::CageState;
 use super::ring_course::RingCourse;
+use crate::interactions::free_contact::place::orbit;
 use crate::interactions::traction::Slip;
 use crate::model::BallInertia;
 
@@ -86,13 +87,7 @@ impl FreeState {
 
     /// Speed of a ball round the axis, rad/s.
     pub fn orbit(&self, ball: usize) -> f64 {
-        let ([x, y, _], [u, v, _]) = (self.places[ball], self.velocities[ball]);
-        let square = x * x + y * y;
-        if square > 0.0 {
-            (x * v - y * u) / square
-        } else {
-            0.0
-        }
+        orbit(self.places[ball], self.velocities[ball])
     }
 
     /// Distance of a ball from the axis, m; its speed round the axis and its turning about e_r, e_psi, e_z, rad/s.

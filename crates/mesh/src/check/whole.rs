@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
+use std::fmt;
 
 use crate::error::MeshError;
 use crate::mesh::{Facet, Mesh};
@@ -90,6 +91,13 @@ pub struct Coverage {
     pub area: f64,
     /// Facets that it lacks, ascending.
     pub missing: Vec<Facet>,
+}
+
+impl fmt::Display for Coverage {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [circle, area] = [self.circle, self.area].map(|share| 100.0 * share);
+        write!(f, "{circle:.1} % of the circle and {area:.1} % of the area")
+    }
 }
 
 /// What a group has of the faces that the mesh has on a surface, to `tolerance` in m; None if it has all.

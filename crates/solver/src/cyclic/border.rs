@@ -93,20 +93,12 @@ impl CyclicBordered {
         assert_eq!(border.len(), m * columns.len(), "{m} rows of border per column");
         let (low, has_first) = (self.factor.ring().low_len(), self.factor.ring().has_first_group());
         let n_first = if has_first { columns.len() } else { 0 };
-        for (w, q) in columns
-            .iter()
-            .zip(border.chunks_exact_mut(m.max(1)))
-            .take(n_first)
-        {
+        for (w, q) in columns[..n_first].iter().zip(border.chunks_exact_mut(m.max(1))) {
             self.reduce_border(&w[..low], q);
         }
         self.factor.ring().share_first(border);
         solve(columns);
-        for (w, q) in columns
-            .iter_mut()
-            .zip(border.chunks_exact(m.max(1)))
-            .take(n_first)
-        {
+        for (w, q) in columns[..n_first].iter_mut().zip(border.chunks_exact(m.max(1))) {
             self.follow_border(q, &mut w[..low]);
         }
     }
@@ -150,9 +142,9 @@ impl CyclicRing {
     pub(super) fn first_group(&self, nodal: &[f64]) -> Result<Vec<f64>, SolverError> {
         let (n, group_len) = (self.n(), self.group_len());
         let mut rows = Vec::with_capacity(group_len * nodal.len().checked_div(n).unwrap_or(0));
-        let mut harmonic = vec![0.0; self.whole_len()];
+        let (alone, mut harmonic) = (self.alone(), vec![0.0; self.whole_len()]);
         for (column, nodal) in nodal.chunks_exact(n.max(1)).enumerate() {
-            self.alone().to_harmonic(nodal, &mut harmonic);
+            alone.to_harmonic(nodal, &mut harmonic);
             let (low, high) = harmonic.split_at(group_len);
             let largest = |x: &[f64]| x.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
             let share = largest(high) / largest(low).max(f64::MIN_POSITIVE);

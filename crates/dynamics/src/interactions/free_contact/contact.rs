@@ -5,7 +5,7 @@ use std::sync::Arc;
 use contact::{AcrossCompliance, ContactLaw, Meridian};
 
 use super::jet::{Jet, N_LENGTHS, cross, dot, fixed, minus, plus, scaled, times};
-use super::place::{Bodies, ContactFrame, GrooveCircle, SlipJets, Standing, frame, standing};
+use super::place::{Bodies, ContactFrame, GrooveCircle, SlipJets, Standing, frame, orbit, standing};
 use super::ring_step::{ElasticPlace, Middle, RingStep, SlopeForce};
 use super::rolling_surface::{OverSurface, RollingSurface, StripTerms};
 use super::surface_force::{SurfaceForce, add_surface, over_surface};
@@ -234,10 +234,9 @@ impl ContactStep {
         let Some(elastic) = self.ring.elastic else {
             return 0.0;
         };
-        let [[x, y, _], [vx, vy, _], _] = self.ball;
-        let orbit = (x * vy - y * vx) / (x * x + y * y);
+        let [place, velocity, _] = self.ball;
         let normal = start.map(|l| l / start.norm());
-        -(orbit - self.ring.spin[0]) * self.dt * normal.dot(Meridian::from(elastic.slope))
+        -(orbit(place, velocity) - self.ring.spin[0]) * self.dt * normal.dot(Meridian::from(elastic.slope))
     }
 
     /// What damping does along the normal, from l at the start to l at the end, m.

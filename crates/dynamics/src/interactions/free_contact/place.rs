@@ -16,6 +16,16 @@
 
 use super::jet::{Jet, Vector, cross, dot, fixed, minus, plus, scaled, times, values};
 
+/// Speed of a ball round the axis, rad/s, from its place and velocity; 0 on the axis.
+pub fn orbit([x, y, _]: [f64; 3], [u, v, _]: [f64; 3]) -> f64 {
+    let square = x * x + y * y;
+    if square > 0.0 {
+        (x * v - y * u) / square
+    } else {
+        0.0
+    }
+}
+
 /// The groove circle and the lever of a contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GrooveCircle {
